@@ -1,12 +1,12 @@
 # Shared by ./demo and ./test; sourced, with $root set to the repository.
-# FRAMEWATCH_BUILD: where build directories go (default: build/ in the repository).
-# FRAMEWATCH_JOBS: parallel jobs (default: the processors).
+# FRAMEWATCH_BUILD: directory of the build directories (default: build/ in the repository).
+# FRAMEWATCH_JOBS: parallel jobs (default: the number of processors).
 build_root=${FRAMEWATCH_BUILD:-$root/build}
 jobs=${FRAMEWATCH_JOBS:-$(nproc)}
 
 say() { printf '== %4d s  %s\n' "$SECONDS" "$*" >&2; }
 
-# install_packages <--yes or empty> [--with NAME]...: what a build needs, or exit 2.
+# install_packages <--yes or empty> [--with NAME]...: installs what a build needs, or exits with 2.
 install_packages() {
   "$root/deploy/install-deps" ${1:+"$1"} "${@:2}" >&2 || exit 2
 }
@@ -33,11 +33,10 @@ build_preset() {
     return 1
   fi
   use_ccache
-  # In CI nobody looks at variables, and nobody compiles one source alone: who does, at a desk, sees a
-  # missing #include.
+  # CI needs no variables for a debugger, and joins sources. A build at your desk finds missing #includes.
   local flags=()
   [ -z "${CI:-}" ] || flags=(-DCMAKE_CXX_FLAGS_DEBUG="-Og -g1" -DFRAMEWATCH_JOIN=ON)
-  # Debian 13 has no clang 14, which the preset names.
+  # The preset names clang 14, which Debian 13 does not have.
   [ "$preset" != fuzz ] || command -v clang++-14 >/dev/null || flags+=(-DCMAKE_CXX_COMPILER=clang++)
   (cd "$root" && cmake --preset "$preset" -B "$build_root/$preset" "${flags[@]}" >/dev/null) &&
     cmake --build "$build_root/$preset" -j "$jobs" --target "$@"

@@ -8,17 +8,145 @@
 namespace framewatch::estimator {
 namespace {
 
+constexpr unsigned kNewest = 1, kOldest = 1u << SpikeGuard::kLookAhead;
+constexpr int kNeverStirred = 1000000;
+constexpr double kRises = 1.3;  // ratio to the first doubtful sample
+constexpr double kNeverChanged = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+SpikeGuard::SpikeGuard(int axes, double rate_hz)
+    : second_(std::max(2, static_cast<int>(std::lround(rate_hz)))),
+      period_(std::max(2, static_cast<int>(std::lround(kPeriod_s * rate_hz)))),
+      longest_(static_cast<int>(std::lround(kLongest_s * rate_hz))),
+      axis_(static_cast<std::size_t>(axes)) {
+  for (Axis& axis : axis_) axis.still = kNeverStirred;
+}
+
+bool SpikeGuard::beyond(const Axis& a, double value, double steps) const {
+  const double reach = steps * std::max({a.step, a.step_before, a.least_step});
+  return value > std::max(a.high, a.high_before) + reach ||
+         value < std::min(a.low, a.low_before) - reach;
+}
+
+/// Takes a sound value into the statistics of its axis. Repeated values are left out: they come
+/// from quiet and from stuck sensors alike.
+void SpikeGuard::take(Axis& a, double value) const {
+  if (a.seen > 0 && value == a.last) return;
+  if (a.seen == 0) {
+    a.change = a.step = a.step_before = 0;
+    a.low = a.high = a.low_before = a.high_before = value;
+    a.in_period = 0;
+  } else {
+    a.change = std::abs(value - a.last);
+    a.step += (a.change - a.step) / a.seen;
+  }
+  a.seen = std::min(a.seen + 1, second_);
+  a.last = value;
+  if (a.in_period == period_) {
+    a.low_before = a.low;
+    a.high_before = a.high;
+    a.step_before = a.step;
+    a.low = a.high = value;
+    a.in_period = 0;
+  }
+  a.low = std::min(a.low, value);
+  a.high = std::max(a.high, value);
+  ++a.in_period;
+}
+
+void SpikeGuard::push(int axis, double value, double finest) {
+  Axis& a = of(axis);
+  std::copy_backward(a.held.begin(), a.held.end() - 1, a.held.end());
+  a.held[0] = value;
+  a.doubtful <<= 1;
+  a.back <<= 1;
+  a.least_step = finest > 0 ? std::max(kMinStep, finest) : kNeverChanged;
+  a.still = std::min(a.still + 1, kNeverStirred);
+  if (a.seen == second_ && std::abs(value - a.last) > kStirred * std::max(a.step, a.least_step))
+    a.still = 0;
+}
+
+bool SpikeGuard::others_stir(int axis) const {
+  bool any = false;
+  for (int b = 0; b < static_cast<int>(axis_.size()); ++b) {
+    const Axis& other = axis_[static_cast<std::size_t>(b)];
+    if (b == axis || std::isnan(other.held[0])) continue;
+    if (other.still <= kStirring) return true;
+    any = true;
+  }
+  return !any;  // no other axis contradicts it
+}
+
+/// Takes the values of these ages, the oldest first. Returns the ages.
+unsigned SpikeGuard::take_ages(Axis& a, unsigned ages) const {
+  for (int age = kLookAhead; age >= 0; --age)
+    if ((ages >> age & 1u) != 0) take(a, a.held[static_cast<std::size_t>(age)]);
+  return ages;
+}
+
+/// Decides all waiting samples. `sound` decides the doubtful ones.
+SpikeGuard::Decided SpikeGuard::decide_all(Axis& a, bool sound) {
+  const Decided out{take_ages(a, sound ? a.doubtful | a.back : a.back), sound ? 0 : a.doubtful};
+  a.doubtful = a.back = 0;
+  a.out = 0;
+  a.rejected = a.rings = a.violent = false;
+  return out;
+}
+
+SpikeGuard::Decided SpikeGuard::decide(int axis) {
+  Axis& a = of(axis);
+  const double value = a.held[0];
+  const bool is_value = !std::isnan(value);
+  const bool far = is_value && beyond(a, value, kFar);
+  if (a.out == 0) {
+    if (!is_value) return {};
+    if (a.seen < second_ || !far || std::abs(value - a.last) <= kAbrupt * a.change) {
+      take(a, value);
+      return {kNewest, 0};
+    }
+  }
+  ++a.out;
+  if (is_value && beyond(a, value, kBack)) {
+    const bool rises = a.out == 2 && (value - a.last) / (a.held[1] - a.last) > kRises;
+    a.rings = a.rings || a.back != 0 || !far || rises;
+    a.violent = a.violent || std::abs(value - a.last) > kMaxAlone;
+    a.doubtful |= kNewest;
+  } else if (is_value) {
+    a.back |= kNewest;
+  }
+  if (a.out > longest_) {
+    a.seen = 0;
+    return decide_all(a, true);
+  }
+  if (others_stir(axis) || (a.rings && !a.violent && !a.rejected)) return decide_all(a, true);
+  Decided out{take_ages(a, a.back & kOldest), a.doubtful & kOldest};
+  a.doubtful &= ~kOldest;
+  a.back &= ~kOldest;
+  a.rejected = a.rejected || out.absurd != 0;
+  if (a.doubtful == 0) out.sound |= decide_all(a, true).sound;
+  return out;
+}
+
+SpikeGuard::Decided SpikeGuard::finish(int axis) {
+  Axis& a = of(axis);
+  return a.doubtful == 0 ? Decided{} : decide_all(a, others_stir(axis));
+}
+
+namespace {
+
 constexpr double kMemory_s = 1;        // of the mean step
-constexpr double kRatioMemory_s = 10;  // of an axis' motion over its neighbours'
+constexpr double kRatioMemory_s = 10;  // of the ratio of an axis's motion to its neighbors'
 constexpr double kStrongestMemory_s = 120;
-constexpr double kStrong = 1.0 / 3;   // of the strongest motion: a recorder's record ends below
-constexpr double kLongRun_s = 0.5;    // equal samples that are stuck when the others move
-constexpr double kMovingFast = 50;    // times the resolution per sample: equal ones are no accident
-constexpr double kOthersMove = 10;    // times the resolution per sample, as the others predict
-constexpr double kFullScale = 0.999;  // of the configured range
+// Share of the strongest motion, below which a recorder ends its record.
+constexpr double kStrong = 1.0 / 3;
+constexpr double kLongRun_s = 0.5;    // equal samples are stuck after this time if the others move
+constexpr double kMovingFast = 50;    // resolutions per sample: equal samples are then no accident
+constexpr double kOthersMove = 10;    // resolutions per sample that the others predict
+constexpr double kFullScale = 0.999;  // share of the configured range
 constexpr int kClippedRun = 3;
-constexpr double kFarFiner = 16;  // times smaller than the smallest step
-constexpr int kFinerRun = 300;    // such changes that are believed
+constexpr double kFarFiner = 16;  // ratio of the smallest step to a far finer change
+constexpr int kFinerRun = 300;    // number of such changes before they are accepted
 
 }  // namespace
 
@@ -50,14 +178,11 @@ AxisGuard::AxisGuard(const std::vector<Axis>& axes, double rate_hz, bool lone_sp
 const SampleSet* AxisGuard::push(const SampleSet& set) {
   const bool interrupted = waiting_ > 0 && set.index != held(0).index + 1;
   newest_ = (newest_ + 1) % kSlots;
-  SampleSet& slot = held(0);
-  slot.time = set.time;
-  slot.index = set.index;
-  std::copy(set.accel.begin(), set.accel.end(), slot.accel.begin());
+  held(0).copy(set);
   ++waiting_;
   for (std::size_t a = 0; a < state_.size(); ++a) {
     if (interrupted) state_[a].run = 0;
-    spikes_.see(static_cast<int>(a), set.accel[a], state_[a].smallest_step);
+    spikes_.push(static_cast<int>(a), set.accel[a], state_[a].smallest_step);
   }
   watch_changes();
   for (std::size_t a = 0; a < state_.size(); ++a) decide(a);
@@ -65,7 +190,7 @@ const SampleSet* AxisGuard::push(const SampleSet& set) {
   return waiting_ > kLookAhead ? give() : nullptr;
 }
 
-/// Judges the samples that are sound, the oldest first.
+/// Judges the sound samples, the oldest first.
 void AxisGuard::decide(std::size_t a) {
   const SpikeGuard::Decided decided =
       lone_spikes_ ? SpikeGuard::Decided{std::isnan(held(0).accel[a]) ? 0u : 1u, 0}
@@ -89,7 +214,7 @@ void AxisGuard::watch_step(State& s, double value) const {
   if (s.seen) {
     const double change = std::abs(value - s.last);
     s.step += forget_ * (change - s.step);
-    // Some far finer changes are another kind of number, not the sensor's resolution.
+    // A few far finer changes are other data, not the sensor's resolution.
     const bool far_finer = kFarFiner * change < s.smallest_step;
     s.finer = std::max(0, s.finer + (far_finer ? 1 : -1));
     if (s.smallest_step == 0 || (change < s.smallest_step && (!far_finer || s.finer > kFinerRun)))
@@ -130,7 +255,7 @@ void AxisGuard::judge(std::size_t a, double value, int age) {
   judge_still(a, age);
 }
 
-/// Of an axis whose newest sample may be one of several equal ones.
+/// Judges an axis whose newest sample may be one of several equal ones.
 void AxisGuard::judge_still(std::size_t a, int age) {
   State& s = state_[a];
   if (s.run <= 1 && !s.still) return;
@@ -154,17 +279,17 @@ void AxisGuard::judge_still(std::size_t a, int age) {
   for (int back = 0; back <= kLookAhead; ++back) remove(a, age + back, s.still ? stuck_ : missing_);
 }
 
-/// Whether the neighbours' motion of the last second says that the axis should move.
+/// Returns true if the neighbors' motion of the last second predicts that the axis should move.
 bool AxisGuard::others_predict(std::size_t a, double ratio, double resolution) {
   if (state_[a].smallest_step > 0) return ratio * others(a, moving_) > kOthersMove * resolution;
-  // An axis that never changed has no step of its own to compare with.
+  // An axis that never changed has no step, so the finest step of its neighbors stands for it.
   double finest = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < state_.size(); ++b)
     if (neighbours(a, b) && moving_[b] > 0) finest = std::min(finest, state_[b].smallest_step);
   return others(a, moving_) > kOthersMove * std::max(finest, kFinest);
 }
 
-/// Called before any sample of this instant is taken out.
+/// Updates the changes of every axis. Call it before removing any sample of this instant.
 void AxisGuard::watch_changes() {
   const int ages = std::min(waiting_, kSlots) - 1;
   for (std::size_t a = 0; a < state_.size(); ++a) {
@@ -181,7 +306,7 @@ void AxisGuard::watch_changes() {
   }
 }
 
-/// How far an axis moves beside its neighbours, while it moves.
+/// Learns how far an axis moves compared with its neighbors, while it moves.
 void AxisGuard::learn_ratios() {
   for (std::size_t a = 0; a < state_.size(); ++a) {
     State& s = state_[a];
@@ -196,7 +321,7 @@ bool AxisGuard::neighbours(std::size_t a, std::size_t b) const {
          (alone_[a] != 0 || state_[b].axis.direction == state_[a].axis.direction);
 }
 
-/// Median over the neighbours; 0 without any.
+/// Returns the median of `of` over the neighbors; 0 without neighbors.
 double AxisGuard::others(std::size_t a, const std::vector<double>& of) {
   sorted_.clear();
   for (std::size_t b = 0; b < state_.size(); ++b)
@@ -207,7 +332,7 @@ double AxisGuard::others(std::size_t a, const std::vector<double>& of) {
   return *middle;
 }
 
-/// Whether no neighbour has moved during the last kLookAhead changes.
+/// Returns true if no neighbor has moved during the last kLookAhead changes.
 bool AxisGuard::all_stopped(std::size_t a) const {
   for (std::size_t b = 0; b < state_.size(); ++b)
     if (neighbours(a, b) && way_[b] > 0) return false;
@@ -230,10 +355,7 @@ const SampleSet* AxisGuard::drain() {
 }
 
 const SampleSet* AxisGuard::give() {
-  const SampleSet& oldest = held(waiting_ - 1);
-  out_.time = oldest.time;
-  out_.index = oldest.index;
-  std::copy(oldest.accel.begin(), oldest.accel.end(), out_.accel.begin());
+  out_.copy(held(waiting_ - 1));
   --waiting_;
   return &out_;
 }

@@ -10,8 +10,8 @@ namespace {
 constexpr int kHalfLength = 6;
 constexpr int kGridPoints = 500;
 
-/// Least squares with equality constraints: minimise |x c - y|, subject to e c = f. By the null
-/// space of e and an orthogonal factorisation: the normal equations would lose half the digits.
+/// Returns the c that minimizes |x c - y| subject to e c = f, by the null space of e and an
+/// orthogonal factorization. Normal equations would lose half the digits.
 Eigen::VectorXd constrained_fit(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                                 const Eigen::MatrixXd& e, const Eigen::VectorXd& f) {
   const Eigen::MatrixXd q = orthogonal_basis(e.transpose());
@@ -22,9 +22,9 @@ Eigen::VectorXd constrained_fit(const Eigen::MatrixXd& x, const Eigen::VectorXd&
   return particular + null * LeastSquares(x * null).solve(y - x * particular);
 }
 
-/// Taps c_-L..c_L (newest first) of sum c_k e^(-i w k) = (i w)^order e^(i w advance), relative
-/// error, held: over what a first-order hold takes off, with the first order + 1 moments exact, so
-/// that behaviour at rest is.
+/// Returns the taps c_-L..c_L, newest first, that fit sum c_k e^(-i w k) = (i w)^order e^(i w
+/// advance) in relative error. `held` divides by the attenuation of a first-order hold. The first
+/// order + 1 moments are exact, and so is the behavior at rest.
 std::vector<double> derivative_taps(int order, double advance, bool held = false) {
   constexpr int kLength = 2 * kHalfLength + 1;
   Eigen::MatrixXd x(2 * kGridPoints, kLength);
@@ -51,7 +51,7 @@ std::vector<double> derivative_taps(int order, double advance, bool held = false
   return {taps.data(), taps.data() + taps.size()};
 }
 
-/// taps convolved with (1 + z^-1)^2 / 4.
+/// Returns `taps` convolved with (1 + z^-1)^2 / 4.
 std::vector<double> with_numerator(const std::vector<double>& taps) {
   std::vector<double> out(taps.size() + 2, 0.0);
   for (std::size_t i = 0; i < taps.size(); ++i) {
@@ -90,6 +90,14 @@ DerivativeTriple trapezoid_triple(double rate_hz) {
           {rate_hz / 2, 0, -rate_hz / 2},
           {rate_hz * rate_hz, -2 * rate_hz * rate_hz, rate_hz * rate_hz},
           1.0};
+}
+
+OscillatorSection::OscillatorSection(double corner_hz, double damping, double rate_hz) {
+  const double w = std::tan(M_PI * corner_hz / rate_hz);
+  const double norm = 1 / (1 + 2 * damping * w + w * w);
+  a1 = 2 * (w * w - 1) * norm;
+  a2 = (1 - 2 * damping * w + w * w) * norm;
+  gain = 4 * w * w * norm;
 }
 
 }  // namespace framewatch::estimator

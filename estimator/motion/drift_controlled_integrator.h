@@ -7,39 +7,39 @@
 
 namespace framewatch::estimator {
 
-/// Second-order Butterworth high-pass (bilinear): removes a sensor's bias, thermal ramp and tilt.
-/// It starts as if the first sample of an axis had always been there, so there is no start step.
-/// docs/equations.md (9).
+/// A second-order Butterworth high-pass (bilinear) that removes a sensor's bias, thermal ramp and
+/// tilt. It starts as if the first sample of an axis had always been there, so there is no start
+/// step. docs/equations.md (9).
 struct HighPass {
   HighPass(double corner_hz, double rate_hz);
   double gain, a1, a2;
 };
 
-/// The part of the drift-controlled integrator that all rows of the regression share, for every
-/// axis: drift control by a high-pass, then p, p' and p'' of what is left by one triple of short
-/// filters. The oscillator section of each row (OscillatorSection, applied by RegressorFilter at a
-/// corner of its own) makes displacement, velocity and acceleration of them. All three have passed
-/// the same filters, so the equation of motion still holds between them.
+/// The part of the drift-controlled integrator that all rows of the regression share: for every
+/// axis a high-pass against drift, then p, p' and p'' by one triple of short filters. The
+/// oscillator section of each row (OscillatorSection, applied by RegressorFilter at the row's
+/// corner) turns them into displacement, velocity and acceleration. All three pass the same
+/// filters, so the equation of motion still holds between them. docs/equations.md, the
+/// drift-controlled integrator.
 ///
-/// docs/equations.md, the drift-controlled integrator.
-///
-/// An axis without a value is invalid until its filters are refilled.
+/// An axis without a value is invalid until its filters have been refilled.
 class DriftControlledIntegrator {
  public:
-  /// triples: one per axis, all of one length and delay.
+  /// triples: one per axis, all of the same length and delay.
   DriftControlledIntegrator(const std::vector<DerivativeTriple>& triples,
                             const HighPass& high_pass);
 
-  /// accel: one value per axis, m/s^2, NaN where missing.
+  /// Takes one value per axis, m/s^2; NaN if it is missing.
   void push(const std::vector<double>& accel);
   void reset();
 
   bool valid(int axis) const { return filled_[index(axis)] >= static_cast<int>(length_); }
-  /// p, p' and p'' of the axis at the last push, m/s^2, m/s^3, m/s^4; 0 while invalid.
+  /// Return p, p' and p'' of the axis at the last push, m/s^2, m/s^3, m/s^4; 0 while the axis is
+  /// invalid.
   double value(int axis) const { return value_[index(axis)]; }
   double first(int axis) const { return first_[index(axis)]; }
   double second(int axis) const { return second_[index(axis)]; }
-  /// DerivativeTriple::held_first and held_second, where the triples have them.
+  /// Return the outputs of DerivativeTriple::held_first and held_second, if the triples have them.
   double held_first(int axis) const { return held_first_[index(axis)]; }
   double held_second(int axis) const { return held_second_[index(axis)]; }
 

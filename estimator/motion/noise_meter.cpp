@@ -7,9 +7,8 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr int kTaps = 61;
-constexpr int kEvery = 4;  // samples per filter output: the band's noise does not need more
-constexpr double kLow = 0.28,
-                 kHigh = 0.45;  // of the sampling rate; half the window's transition in
+constexpr int kEvery = 4;  // samples per filter output; the band's noise needs no more
+constexpr double kLow = 0.28, kHigh = 0.45;  // of the sampling rate, with half the transition
 constexpr double kNoiseMemory_s = 5;
 constexpr double kLeast_s = 1;
 
@@ -39,7 +38,7 @@ NoiseMeter::NoiseMeter(int axes, double rate_hz)
     at_rest += taps_.back();
     area += window.back();
   }
-  // A sensor's bias is many times its noise: the gain at rest is exactly zero.
+  // Makes the gain at rest exactly zero, because a sensor's bias is many times its noise.
   for (std::size_t i = 0; i < kTaps; ++i) {
     taps_[i] -= at_rest / area * window[i];
     gain_ += taps_[i] * taps_[i];

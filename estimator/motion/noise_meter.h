@@ -4,10 +4,10 @@
 
 namespace framewatch::estimator {
 
-/// Measures the noise of the axes in a band where a building hardly moves, 0.29 to 0.45 of the
-/// sampling rate, over the last 5 s. What is kBeyond times as large is no noise, and neither is
-/// what has it in its filter, unless it lasts for kLasts_s. A filter full of equal values tells
-/// nothing of the noise: zeros about a record, or a resolution coarser than the noise.
+/// Measures the noise of the axes over the last 5 s, in a band where a building hardly moves: 0.29
+/// to 0.45 of the sampling rate. An output kBeyond times as large is not noise and is left out,
+/// with all outputs whose filter holds it, unless it lasts for kLasts_s. A filter full of equal
+/// values is left out too: zeros around a record, or a resolution coarser than the noise.
 /// docs/equations.md, measured noise.
 class NoiseMeter {
  public:
@@ -15,11 +15,11 @@ class NoiseMeter {
 
   NoiseMeter(int axes, double rate_hz);
 
-  /// One calibrated sample per axis; NaN starts that axis' filter anew.
+  /// Takes one calibrated sample per axis. NaN restarts the filter of that axis.
   void push(const std::vector<double>& accel);
-  /// One-sided density, m/s^2/sqrt(Hz); 0 before a second has been measured.
+  /// Returns the one-sided density, m/s^2/sqrt(Hz); 0 before one second has been measured.
   double density(int axis) const;
-  /// Forgets everything.
+  /// Discards all measurements.
   void reset();
 
   template <typename Archive>
@@ -33,10 +33,10 @@ class NoiseMeter {
  private:
   struct Axis {
     int filled = 0;
-    int still = 0;  ///< equal values in the filter, after the first of them
+    int still = 0;  ///< equal values in the filter after the first of them
     long measured = 0;
-    long beyond = 0;  ///< outputs in a row that were left out
-    int tainted = 0;  ///< outputs to come that have something beyond in their filter
+    long beyond = 0;  ///< outputs left out in a row
+    int tainted = 0;  ///< coming outputs whose filter holds an excluded value
     double power = 0;
 
     template <typename Archive>

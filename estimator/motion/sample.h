@@ -1,12 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <vector>
 
 namespace framewatch::estimator {
 
-/// The sensors' clock: whatever the nodes are synchronised to. The estimator knows no other.
+/// The clock of the sensors, to which the nodes are synchronized. The estimator uses no other
+/// clock.
 struct SensorClock {
   using duration = std::chrono::microseconds;
   using rep = duration::rep;
@@ -23,20 +25,27 @@ inline Time from_microseconds(std::int64_t us) {
   return Time(SensorClock::duration(us));
 }
 
-/// One axis at one instant: the sensor's raw value, m/s^2 before calibration.
+/// The raw value of one axis at one instant, m/s^2 before calibration.
 struct AccelSample {
   Time time;
   int axis = 0;  ///< index into the sensor axes
   double accel = 0;
 };
 
-/// All axes at one instant of the common grid, calibrated, m/s^2; NaN where an axis has no value.
+/// The calibrated values of all axes at one instant of the common grid, m/s^2; NaN for an axis
+/// without a value.
 struct SampleSet {
   Time time;
-  std::int64_t index = 0;  ///< instant number on the common grid
+  std::int64_t index = 0;  ///< number of the instant on the common grid
   std::vector<double> accel;
 
-  /// State, here and in every other archive(): estimator/state/archive.h.
+  /// Copies a set of as many axes without allocating.
+  void copy(const SampleSet& other) {
+    time = other.time;
+    index = other.index;
+    std::copy(other.accel.begin(), other.accel.end(), accel.begin());
+  }
+  /// Archives the state, as every archive() does: estimator/state/archive.h.
   template <typename Archive>
   void archive(Archive& a) {
     a(time);

@@ -7,9 +7,9 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kOffGrid = 0.3;     // of a step: a sample farther from its instant is no sample
-constexpr double kPhaseGain = 0.02;  // how fast the grid follows the stamps
-constexpr std::int64_t kBeyondLateness = 8;  // instants beyond the lateness that may be open
+constexpr double kOffGrid = 0.3;     // steps from an instant beyond which a sample is rejected
+constexpr double kPhaseGain = 0.02;  // rate at which the grid follows the stamps
+constexpr std::int64_t kBeyondLateness = 8;  // further instants that may be open
 
 }  // namespace
 
@@ -43,7 +43,7 @@ std::int64_t SampleMerger::index_of(double time_us) const {
 void SampleMerger::anchor(double time_us) {
   for (Instant& i : open_) clear(i);
   phase_us_ = time_us;
-  // A new anchor makes the numbering jump: readers of the sets see the interruption.
+  // A new anchor makes the index jump, so readers of the sets see the interruption.
   origin_ = anchored_ ? std::max(newest_, first_open_) + 2 : 0;
   first_open_ = origin_;
   newest_ = origin_ - 1;
@@ -94,7 +94,7 @@ bool SampleMerger::push(const AccelSample& sample) {
     return true;
   }
   newest_ = std::max(newest_, index);
-  // A sample that is no number still says the axis has delivered: nobody waits for a better one.
+  // A NaN still counts as delivered, so the instant does not wait for the axis.
   if (std::isfinite(sample.accel))
     slot.accel[axis] = sample.accel;
   else
@@ -113,7 +113,7 @@ void SampleMerger::set_silent(std::size_t axis, bool silent) {
 }
 
 bool SampleMerger::complete(const Instant& instant) const {
-  // Asked at every sample: mostly the count alone says no.
+  // Called for every sample; the count alone usually decides.
   if (static_cast<std::size_t>(instant.delivered) + silent_count_ < silent_.size()) return false;
   for (std::size_t a = 0; a < silent_.size(); ++a)
     if (instant.has[a] == 0 && silent_[a] == 0) return false;

@@ -7,16 +7,16 @@
 
 namespace framewatch::estimator {
 
-/// Counts of what happened to the samples of one axis.
+/// Counts the samples of one axis by what happened to them.
 struct AxisCounters {
   std::int64_t received = 0;
   std::int64_t missing = 0;   ///< instants closed without a value, or while all values stopped
-  std::int64_t late = 0;      ///< came after their instant was closed
+  std::int64_t late = 0;      ///< arrived after their instant was closed
   std::int64_t repaired = 0;  ///< single losses filled by interpolation
-  std::int64_t stuck = 0;     ///< taken out: the value stood still while the building moved
-  std::int64_t clipped = 0;   ///< taken out: at the end of the sensor's range
+  std::int64_t stuck = 0;     ///< removed: the value did not change while the building moved
+  std::int64_t clipped = 0;   ///< removed: at the end of the sensor's range
   std::int64_t rejected = 0;  ///< NaN, absurd, duplicate, off the grid or far from the others
-  std::int64_t absurd = 0;    ///< of these: values that no sensor can have measured
+  std::int64_t absurd = 0;    ///< part of `rejected`: values that no sensor can have measured
 
   template <typename Archive>
   void archive(Archive& a) {
@@ -26,22 +26,22 @@ struct AxisCounters {
   }
 };
 
-/// Brings the axes' samples together on one grid of instants. An instant is closed once every
-/// axis that is not silent has delivered, or when a sample `lateness` newer has come, so that a
-/// dead sensor does not delay the others. Instants come out in order; a jump of SampleSet::index is
-/// an interruption. The grid's phase follows the time stamps, so it tolerates a sampling clock that
-/// is off by 1000 ppm.
+/// Merges the axes' samples on one grid of instants. An instant is closed when every axis that is
+/// not silent has delivered, or when a sample `lateness` newer has arrived, so a dead sensor does
+/// not delay the others. Instants are returned in order; a jump of SampleSet::index is an
+/// interruption. The grid's phase follows the time stamps, so it tolerates a sampling clock that is
+/// off by 1000 ppm.
 class SampleMerger {
  public:
   SampleMerger(int axes, double rate_hz, double lateness_s);
 
-  /// Bad samples are counted and dropped. False when the sample is so much newer than what is open
-  /// that next() must be called until it is empty, and the sample pushed again.
+  /// Takes a sample. Bad samples are counted and dropped. Returns false if the sample is too new
+  /// for the open instants: call next() until it returns nullptr, then push the sample again.
   [[nodiscard]] bool push(const AccelSample& sample);
-  /// The oldest instant that can be closed, if any. Values NaN where an axis did not deliver.
-  /// The reference is valid until the next call.
+  /// Returns the oldest instant that can be closed, or nullptr. An axis that did not deliver is
+  /// NaN. The result is valid until the next call.
   const SampleSet* next();
-  /// No more samples will come: next() gives out everything that is open.
+  /// Lets next() return every open instant. Call it when no more samples will come.
   void finish() { finishing_ = true; }
 
   const std::vector<AxisCounters>& counters() const { return counters_; }
@@ -85,7 +85,7 @@ class SampleMerger {
   void clear(Instant& instant);
 
   double step_us_;
-  std::int64_t lateness_;  ///< instants
+  std::int64_t lateness_;  ///< in instants
   int stray_limit_;
   std::vector<Instant> open_;
   std::vector<std::uint8_t> silent_;

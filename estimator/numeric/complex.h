@@ -1,4 +1,4 @@
-// The letters of the frequency domain.
+// Complex numbers of the frequency domain.
 #pragma once
 
 #include <complex>

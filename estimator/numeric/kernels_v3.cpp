@@ -1,4 +1,4 @@
-// Compiled with -march=x86-64-v3 where there is such a thing (estimator/CMakeLists.txt).
+// Compiled with -march=x86-64-v3 where the compiler supports it (estimator/CMakeLists.txt).
 #include "estimator/numeric/kernels.h"
 
 #ifdef __AVX2__

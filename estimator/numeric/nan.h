@@ -4,6 +4,7 @@
 
 namespace framewatch::estimator {
 
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< no value
+/// Stands for a missing value.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace framewatch::estimator

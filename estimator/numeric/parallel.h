@@ -4,8 +4,8 @@
 
 namespace framewatch::estimator {
 
-/// Calls work(0) .. work(count - 1), each once, in any order, perhaps at once; returns when all are
-/// done. Results must not depend on the order. Empty: one after the other.
+/// A function that calls work(0) .. work(count - 1), each once, in any order, possibly in parallel,
+/// and returns when all are done. Results must not depend on the order.
 using Parallel = std::function<void(int count, const std::function<void(int)>& work)>;
 
 inline void run_all(const Parallel& parallel, int count, const std::function<void(int)>& work) {

@@ -129,7 +129,7 @@ VectorXd LeastSquares::solve(const VectorXd& right) const {
 }
 
 VectorXd solve_positive(const MatrixXd& symmetric, const VectorXd& right) {
-  constexpr Eigen::Index kPays = 200;  // unknowns
+  constexpr Eigen::Index kPays = 200;  // number of unknowns from which Cholesky is faster
   if (symmetric.cols() >= kPays)
     if (const Cholesky quick(symmetric); quick.good()) return quick.solve(MatrixXd(right));
   return Ldlt(symmetric).solve(right);

@@ -4,14 +4,15 @@
 
 #include <Eigen/Core>
 
-#include "estimator/numeric/row_matrix.h"
-
 namespace framewatch::estimator {
 
-// Eigen's decompositions behind plain functions, so that their templates are compiled here and
-// nowhere else: each costs seconds of every source that names it.
+/// A matrix stored row after row.
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// L D L' of a symmetric matrix, with pivoting (Eigen::LDLT).
+// Eigen's decompositions behind plain functions. Their templates are compiled here only, because
+// each costs seconds in every source that names it.
+
+/// The factorization L D L' of a symmetric matrix with pivoting (Eigen::LDLT).
 class Ldlt {
  public:
   Ldlt();
@@ -22,14 +23,14 @@ class Ldlt {
   Ldlt& operator=(Ldlt&& other) noexcept;
   ~Ldlt();
 
-  /// False when the matrix is not finite.
+  /// Returns false if the matrix has a value that is not finite.
   bool good() const;
   bool positive() const;
-  /// The diagonal of D.
+  /// Returns the diagonal of D.
   Eigen::VectorXd pivots() const;
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
-  /// Of the transpose of `rows`, along its rows as they lie in memory.
+  /// Solves for the transpose of `rows`. The result is stored row by row, as `rows` is.
   RowMatrix solve_transposed(const Eigen::MatrixXd& rows) const;
 
  private:
@@ -37,13 +38,13 @@ class Ldlt {
   std::unique_ptr<Factor> factor_;
 };
 
-/// L L' of a symmetric positive matrix (Eigen::LLT).
+/// The factorization L L' of a symmetric positive definite matrix (Eigen::LLT).
 class Cholesky {
  public:
   explicit Cholesky(const Eigen::MatrixXd& symmetric);
   ~Cholesky();
 
-  /// False when the matrix is not positive definite.
+  /// Returns false if the matrix is not positive definite.
   bool good() const;
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
 
@@ -52,12 +53,12 @@ class Cholesky {
   std::unique_ptr<Factor> factor_;
 };
 
-/// symmetric^-1 right of a matrix that is positive definite but for rounding: by L L' where there
-/// are hundreds of unknowns, then several times as fast as Ldlt; by that one where there are fewer
-/// or a pivot is not positive.
+/// Returns symmetric^-1 right for a matrix that is positive definite up to rounding. Uses L L' from
+/// 200 unknowns on, where it is several times as fast as Ldlt; uses Ldlt below or if a pivot is not
+/// positive.
 Eigen::VectorXd solve_positive(const Eigen::MatrixXd& symmetric, const Eigen::VectorXd& right);
 
-/// L L^H of a Hermitian positive matrix (Eigen::LLT).
+/// The factorization L L^H of a Hermitian positive definite matrix (Eigen::LLT).
 class ComplexCholesky {
  public:
   explicit ComplexCholesky(const Eigen::MatrixXcd& hermitian);
@@ -65,7 +66,7 @@ class ComplexCholesky {
 
   bool good() const;
   Eigen::MatrixXcd solve(const Eigen::MatrixXcd& right) const;
-  /// L^-1 right.
+  /// Returns L^-1 right.
   Eigen::MatrixXcd whitened(const Eigen::MatrixXcd& right) const;
   Eigen::VectorXcd whitened(const Eigen::VectorXcd& right) const;
 
@@ -74,7 +75,7 @@ class ComplexCholesky {
   std::unique_ptr<Factor> factor_;
 };
 
-/// P L U of a square matrix with partial pivoting (Eigen::PartialPivLU).
+/// The factorization P L U of a square matrix with partial pivoting (Eigen::PartialPivLU).
 class ComplexLu {
  public:
   explicit ComplexLu(const Eigen::MatrixXcd& square);
@@ -88,14 +89,15 @@ class ComplexLu {
   std::unique_ptr<Factor> factor_;
 };
 
-/// square^-1 right, by P L U with partial pivoting.
+/// Returns square^-1 right by P L U with partial pivoting.
 Eigen::MatrixXd solve_lu(const Eigen::MatrixXd& square, const Eigen::MatrixXd& right);
 Eigen::VectorXd solve_lu(const Eigen::MatrixXd& square, const Eigen::VectorXd& right);
-/// hermitian^-1 right, by L D L^H.
+/// Returns hermitian^-1 right by L D L^H.
 Eigen::VectorXcd solve_ldlt(const Eigen::MatrixXcd& hermitian, const Eigen::VectorXcd& right);
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& square);
 
-/// The x with the least |tall x - right|, by Householder QR with column pivoting.
+/// Least squares: solve() returns the x that minimizes |tall x - right|, by Householder QR with
+/// column pivoting.
 class LeastSquares {
  public:
   explicit LeastSquares(const Eigen::MatrixXd& tall);
@@ -108,7 +110,7 @@ class LeastSquares {
   std::unique_ptr<Factor> factor_;
 };
 
-/// The orthogonal Q of tall = Q R, rows x rows, by Householder reflections.
+/// Returns the orthogonal matrix Q of tall = Q R, rows x rows, by Householder reflections.
 Eigen::MatrixXd orthogonal_basis(const Eigen::MatrixXd& tall);
 
 }  // namespace framewatch::estimator

@@ -1,7 +1,6 @@
 #include "estimator/pipeline/pipeline.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "estimator/identify/window/sliding_window_estimator.h"
 #include "estimator/motion/acquisition.h"
@@ -10,26 +9,49 @@ namespace framewatch::estimator {
 
 class Pipeline::Implementation {
  public:
-  Implementation(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants,
-                 ModelSink models)
+  explicit Implementation(const PipelineConfig& config)
       : table_(config.parameters()),
-        acquisition_(config.axes, config.options, [this](const SampleSet& set) { estimate(set); }),
-        estimator_(config, table_),
-        sink_(std::move(sink)),
-        others_(std::move(others)),
-        instants_(std::move(instants)),
-        models_(std::move(models)) {}
+        acquisition_(config.axes, config.options),
+        estimator_(config, table_) {}
 
   void start_tuned(const Tuning& tuning) { estimator_.start_tuned(tuning); }
-  void push(const AccelSample& raw) { acquisition_.push(raw); }
-  void finish() { acquisition_.finish(); }
+  Acquisition& acquisition() { return acquisition_; }
+
+  /// Returns the next result, valid until the next call, or null.
+  const PipelineResult* next() {
+    for (;;) {
+      result_ = {};
+      if (looking_back_) {
+        result_.late = estimator_.late();
+        if (result_.late != nullptr) return &result_;
+        looking_back_ = false;
+      }
+      if (missing_ > 0) {
+        --missing_;
+        estimator_.push_missing();
+      } else if (instant_ != nullptr) {
+        result_.estimate = estimator_.push(*std::exchange(instant_, nullptr));
+        if (result_.estimate != nullptr) ++windows_;
+      } else {
+        instant_ = acquisition_.next();
+        if (instant_ == nullptr) return nullptr;
+        ++sets_;
+        missing_ = estimator_.missing_before(*instant_);
+        result_.instant = instant_;
+        return &result_;
+      }
+      result_.other = estimator_.other();
+      result_.model = estimator_.model_fit();
+      looking_back_ = true;
+      if (result_.estimate != nullptr || result_.other != nullptr || result_.model != nullptr)
+        return &result_;
+    }
+  }
 
   PipelineCounters counters() const {
     return {sets_, estimator_.interruptions(), windows_, estimator_.retunes(),
             acquisition_.counters()};
   }
-
-  void on_late(Sink late) { late_ = std::move(late); }
 
   template <typename Archive>
   void archive(Archive& a) {
@@ -42,56 +64,35 @@ class Pipeline::Implementation {
   const SlidingWindowEstimator& estimator() const { return estimator_; }
 
  private:
-  void estimate(const SampleSet& set) {
-    ++sets_;
-    if (instants_) instants_(set);
-    for (int missing = estimator_.missing_before(set); missing > 0; --missing) {
-      estimator_.push_missing();
-      give_others();
-    }
-    if (const WindowEstimate* estimate = estimator_.push(set)) {
-      ++windows_;
-      sink_(*estimate);
-    }
-    give_others();
-  }
-
-  void give_others() {
-    if (const WindowEstimate* other = estimator_.other(); other != nullptr && others_)
-      others_(*other);
-    if (const ModelFit* fit = estimator_.model_fit(); fit != nullptr && models_) models_(*fit);
-    while (const WindowEstimate* late = estimator_.late())
-      if (late_) late_(*late);
-  }
-
   ParameterTable table_;
   Acquisition acquisition_;
   SlidingWindowEstimator estimator_;
-  Sink sink_, others_, late_;
-  InstantSink instants_;
-  ModelSink models_;
+  PipelineResult result_;
+  const SampleSet* instant_ = nullptr;  ///< of acquisition_, for the estimator
+  int missing_ = 0;                     ///< instants without samples before it
+  bool looking_back_ = false;           ///< late windows are asked for
   std::int64_t sets_ = 0, windows_ = 0;
 };
 
-Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants,
-                   ModelSink models)
-    : implementation_(std::make_unique<Implementation>(config, std::move(sink), std::move(others),
-                                                       std::move(instants), std::move(models))) {}
+Pipeline::Pipeline(const PipelineConfig& config)
+    : implementation_(std::make_unique<Implementation>(config)) {}
 Pipeline::~Pipeline() = default;
-void Pipeline::on_late(Sink late) {
-  implementation_->on_late(std::move(late));
-}
 void Pipeline::start_tuned(const Tuning& tuning) {
   implementation_->start_tuned(tuning);
 }
 std::optional<Tuning> Pipeline::tuning() const {
   return implementation_->estimator().tuning();
 }
-void Pipeline::push(const AccelSample& sample) {
-  implementation_->push(sample);
+Pipeline::Results Pipeline::push(const AccelSample& sample) {
+  implementation_->acquisition().take(sample);
+  return Results(*this);
 }
-void Pipeline::finish() {
-  implementation_->finish();
+Pipeline::Results Pipeline::finish() {
+  implementation_->acquisition().end();
+  return Results(*this);
+}
+const PipelineResult* Pipeline::next() {
+  return implementation_->next();
 }
 const ParameterTable& Pipeline::parameters() const {
   return implementation_->table();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,11 +8,10 @@
 #include <Eigen/Core>
 
 #include "estimator/identify/estimate/estimate.h"
-#include "estimator/identify/estimate/model_fit.h"
+#include "estimator/motion/pulled.h"
 #include "estimator/motion/sample.h"
 #include "estimator/motion/sample_merger.h"
 #include "estimator/setup/pipeline_config.h"
-#include "estimator/setup/tuning.h"
 #include "estimator/state/archive.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
@@ -24,26 +22,34 @@ namespace framewatch::estimator {
 struct PipelineCounters {
   std::int64_t sample_sets = 0;
   std::int64_t interruptions = 0;  ///< breaks that restarted the window
-  std::int64_t windows = 0;        ///< estimates given to the sink
+  std::int64_t windows = 0;        ///< estimates of the main window
   std::int64_t retunes = 0;        ///< times the filters were re-tuned
   std::vector<AxisCounters> axes;
 };
 
-/// Samples in, window estimates out. Reads no clock, never throws and allocates nothing after
+/// One result of a pipeline; pointers are null for what it does not have.
+struct PipelineResult {
+  /// A calibrated instant. It comes before the estimates that it completes.
+  const SampleSet* instant = nullptr;
+  /// Of the main window that ends now.
+  const WindowEstimate* estimate = nullptr;
+  /// Of a window of another length (EstimatorOptions::other_windows_s).
+  const WindowEstimate* other = nullptr;
+  /// How far the model may be wrong, once per window length.
+  const ModelFit* model = nullptr;
+  /// Of a window that was held back while the filters were not tuned to the building. Ends in the
+  /// past.
+  const WindowEstimate* late = nullptr;
+};
+
+/// Turns samples into window estimates. Reads no clock, never throws and allocates nothing after
 /// construction. Long computations are spread over instants by their count (docs/performance.md).
 class Pipeline {
  public:
-  using Sink = std::function<void(const WindowEstimate&)>;
-  using InstantSink = std::function<void(const SampleSet&)>;
-  using ModelSink = std::function<void(const ModelFit&)>;
+  using Results = Pulled<Pipeline, PipelineResult>;
 
-  /// Precondition: problems(config) is empty. others: gets the estimates of the other windows, if
-  /// anybody wants them; instants: the calibrated instants, each before the estimate it completes;
-  /// models: how far the model may be wrong, once per window's length.
-  Pipeline(const PipelineConfig& config, Sink sink, Sink others = {}, InstantSink instants = {},
-           ModelSink models = {});
-  /// Gets windows that were held back while the filters were not tuned to the building (late).
-  void on_late(Sink late);
+  /// Precondition: problems(config) is empty.
+  explicit Pipeline(const PipelineConfig& config);
   ~Pipeline();
 
   /// The row filters are tuned to this from the first sample on, as after a pass over the same
@@ -54,10 +60,13 @@ class Pipeline {
   /// options.self_tune is false.
   std::optional<Tuning> tuning() const;
 
-  /// One axis at one instant. Any order within options.lateness_s.
-  void push(const AccelSample& sample);
-  /// The input has ended: closes the instants still open.
-  void finish();
+  /// Takes a sample of one axis at one instant, in any order within options.lateness_s. Returns the
+  /// results it completes, in their order; the caller may ignore them.
+  Results push(const AccelSample& sample);
+  /// Ends the input: closes the instants still open, and returns their results.
+  Results finish();
+  /// Returns the next result of the newest push() or finish(), valid until the next call, or null.
+  const PipelineResult* next();
 
   const ParameterTable& parameters() const;
   /// The configured axes with the remaining fractions of their delays in calibrated instants.
@@ -84,5 +93,20 @@ class Pipeline {
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Calls `take` with every estimate of the main window.
+template <typename Take>
+void each_main_window(Pipeline::Results&& results, const Take& take) {
+  for (const PipelineResult& result : results)
+    if (result.estimate != nullptr) take(*result.estimate);
+}
+
+/// Calls `take` with every estimate of the main window and of the other windows, not of late ones.
+template <typename Take>
+void each_window(Pipeline::Results&& results, const Take& take) {
+  for (const PipelineResult& result : results)
+    for (const WindowEstimate* estimate : {result.estimate, result.other})
+      if (estimate != nullptr) take(*estimate);
+}
 
 }  // namespace framewatch::estimator

@@ -20,13 +20,13 @@ std::vector<std::string> problems(const PipelineConfig& config) {
   at_least("window_s", o.window_s, 40 / o.rate_hz);
   for (const double s : o.other_windows_s) {
     at_least("other_windows_s", s, 8 / o.rate_hz);
-    if (s > 20 * o.window_s) found.push_back("other_windows_s: at most 20 times window_s");
+    if (s > 20 * o.window_s) found.push_back("other_windows_s: must be at most 20 times window_s");
   }
   if (o.long_window_s != 0) {
     double longest = o.window_s;
     for (const double s : o.other_windows_s) longest = std::max(longest, s);
     if (!(o.long_window_s > longest))
-      found.push_back("the long window (watch.quiet_window_s): must be longer than the others");
+      found.push_back("watch.quiet_window_s: must be longer than the other windows");
   }
   at_least("hop_s", o.hop_s, 0);
   at_least("boxplot_windows", o.boxplot_windows, 1);
@@ -42,8 +42,8 @@ std::vector<std::string> problems(const PipelineConfig& config) {
         std::none_of(config.axes.begin(), config.axes.end(),
                      [&](const SensorAxis& a) { return a.story == floor && floor > 0; }))
       found.push_back(name +
-                      ": has no channel, so nothing tells the stories below it from those "
-                      "above");
+                      ": no channel measures this floor, so the stories below and above it "
+                      "cannot be distinguished");
   }
   if (config.design.size() > 0) {
     const ParameterTable table(config.structure);

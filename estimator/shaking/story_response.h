@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "estimator/identify/estimate/estimate.h"
-#include "estimator/motion/oscillator_section.h"
+#include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/sample.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/setup/pipeline_config.h"

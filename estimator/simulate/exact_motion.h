@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "estimator/motion/motion_history.h"
+#include "estimator/identify/solve/batch_least_squares.h"
 #include "estimator/simulate/ground_motion.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"

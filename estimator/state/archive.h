@@ -15,24 +15,25 @@
 
 namespace framewatch::estimator {
 
-/// Values that are written as they lie in memory.
+/// Types whose values are written as the bytes they have in memory.
 template <typename T>
 concept PlainState = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// A class with state: archive() names every member that outlives a call, once for writing and
-/// reading. Members that the constructor derives from the configuration, and those that are
-/// computed anew before they are read, are not part of it.
+/// Types with state. archive() lists every member that outlives a call; the same list serves for
+/// writing and for reading. Members that the constructor derives from the configuration are left
+/// out, and so are members that are computed anew before they are read.
 template <typename T, typename Archive>
 concept Archived = requires(T& value, Archive& archive) {
   value.archive(archive);
 };
 
-/// Common to writer and reader: how a value is divided into plain ones. Derived has
-/// plain(T&), block(std::vector<T>&, bool any_size) and count(std::size_t), which gives back the
-/// size to take.
+/// The common part of StateWriter and StateReader: divides a value into plain ones. Derived defines
+/// plain(T&), block(std::vector<T>&, bool any_size) and count(std::size_t), which returns the size
+/// to use.
 ///
-/// What is read comes from a file, so it is checked as it is read: a vector keeps its number of
-/// elements, and numbers that index or filter say with the functions below what they can be.
+/// State comes from a file, so every value is checked as it is read. A vector keeps its number of
+/// elements. Numbers that index or filter are archived with the functions below, which state their
+/// range.
 template <typename Derived>
 class StateArchive {
  public:
@@ -40,20 +41,21 @@ class StateArchive {
   void operator()(T&... values) {
     (item(values), ...);
   }
-  /// Numbers, vectors and matrices of them, that are finite and within kMax.
+  /// Archives numbers and vectors and matrices of numbers. Refuses a value that is not finite or
+  /// exceeds kMax.
   template <typename... T>
   void finite(T&... values) {
     (item(values), ...);
     if (!(all_finite(values) && ...)) self().refuse();
   }
-  /// A number from `least` to `most`.
+  /// Archives a number. Refuses one outside least..most.
   template <typename T>
   void within(T& value, double least, double most) {
     item(value);
     const auto number = static_cast<double>(value);
     if (!(number >= least && number <= most)) self().refuse();
   }
-  /// Each of a vector's numbers.
+  /// Archives a vector of numbers. Refuses one outside least..most.
   template <typename T>
   void each_within(std::vector<T>& values, double least, double most) {
     item(values);
@@ -61,14 +63,14 @@ class StateArchive {
       if (!(static_cast<double>(value) >= least && static_cast<double>(value) <= most))
         return self().refuse();
   }
-  /// A vector whose length varies; whoever reads it checks that.
+  /// Archives a vector of variable length. The caller checks the length after reading.
   template <PlainState T>
   void any_size(std::vector<T>& values) {
     self().block(values, true);
   }
 
   static constexpr double kMax = 1e100;        ///< magnitude of any sum of squares of motion
-  static constexpr double kMaxCount = 4.5e15;  ///< whole numbers: exact, and far from overflow
+  static constexpr double kMaxCount = 4.5e15;  ///< largest whole number: exact, far from overflow
 
  private:
   Derived& self() { return static_cast<Derived&>(*this); }
@@ -95,7 +97,7 @@ class StateArchive {
     text.assign(characters.begin(), characters.end());
   }
   template <typename T>
-  void item(std::deque<T>& values) {  // of a size that the configuration gives
+  void item(std::deque<T>& values) {  // the configuration determines the size
     if (self().count(values.size()) != values.size()) return self().refuse();
     for (T& value : values) item(value);
   }
@@ -131,14 +133,15 @@ class StateArchive {
       if (!all_finite(value)) return false;
     return true;
   }
-  /// Elements that are classes are built by the configuration: their number must fit.
+  /// Compares the stored number of elements with that of `values`, whose elements the configuration
+  /// builds. Refuses another number.
   template <typename T>
   void resize(std::vector<T>& values) {
     if (self().count(values.size()) != values.size()) self().refuse();
   }
 };
 
-/// Collects a state as bytes.
+/// Writes a state as bytes.
 class StateWriter : public StateArchive<StateWriter> {
  public:
   static constexpr bool kReading = false;
@@ -172,16 +175,16 @@ class StateWriter : public StateArchive<StateWriter> {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Reads a state. Never reads beyond its bytes; when they do not fit the objects that are read,
-/// good() is false from there on and these objects must be discarded.
+/// Reads a state. Never reads beyond its bytes. When the bytes do not fit the objects, good()
+/// returns false from then on, and the caller must discard these objects.
 class StateReader : public StateArchive<StateReader> {
  public:
   static constexpr bool kReading = true;
-  /// The bytes must outlive the reader.
+  /// Keeps a reference to `bytes`, which must outlive the reader.
   explicit StateReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
   bool good() const { return good_; }
-  /// Everything was read and no byte remains.
+  /// Returns true if everything was read and no byte remains.
   bool whole() const { return good_ && at_ == bytes_.size(); }
 
   template <PlainState T>
@@ -198,7 +201,8 @@ class StateReader : public StateArchive<StateReader> {
     values.resize(size);
     if (size > 0) take(values.data(), size * sizeof(T));
   }
-  /// Elements take at least a byte each, so a count cannot exceed the bytes that remain.
+  /// Reads a count and returns it. Refuses one above the number of remaining bytes and returns 0:
+  /// every element takes at least one byte.
   std::size_t count(std::size_t) {
     std::uint64_t stored = 0;
     plain(stored);
@@ -220,6 +224,22 @@ class StateReader : public StateArchive<StateReader> {
   const std::vector<std::uint8_t>& bytes_;
   std::size_t at_ = 0;
   bool good_ = true;
+};
+
+/// A base class for state behind an interface: archive() calls save() or load() of the derived
+/// class.
+class SavedByVirtual {
+ public:
+  virtual ~SavedByVirtual() = default;
+  virtual void save(StateWriter& state) = 0;
+  virtual void load(StateReader& state) = 0;
+  template <typename Archive>
+  void archive(Archive& a) {
+    if constexpr (Archive::kReading)
+      load(a);
+    else
+      save(a);
+  }
 };
 
 }  // namespace framewatch::estimator

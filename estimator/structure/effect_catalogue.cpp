@@ -12,7 +12,7 @@ using enum EffectKind;
 constexpr double kAny = 1e15;
 constexpr double kLong_s = 1e6;
 
-/// Any size of either sign.
+/// A value of any size and sign.
 EffectParameter either_sign(std::string_view key, std::string_view unit, std::string_view meaning) {
   return {key, unit, std::nullopt, -kAny, kAny, false, meaning};
 }
@@ -21,7 +21,7 @@ EffectParameter positive(std::string_view key, std::string_view unit, std::strin
   return {key, unit, std::nullopt, 0, kAny, true, meaning};
 }
 
-/// An effect's size: 0 is no effect.
+/// The size of an effect; 0 means none.
 EffectParameter not_negative(std::string_view key, std::string_view unit,
                              std::string_view meaning) {
   return {key, unit, std::nullopt, 0, kAny, false, meaning};
@@ -33,25 +33,21 @@ EffectParameter within(std::string_view key, std::string_view unit, std::optiona
 }
 
 constexpr std::string_view kHystereticSign =
-    "kh > 0 resists. It comes on top of k: k + kh at first, k after yielding. Dissipates.";
+    "kh > 0 resists and adds to k until yielding. Dissipates.";
 
-const EffectParameter kHystereticStiffness =
-    not_negative("kh_npm", "N/m", "stiffness of the hysteretic part");
-const EffectParameter kYieldDeformation =
-    positive("dy_m", "m", "largest elastic deformation z of the hysteretic part");
+const EffectParameter kHystereticStiffness = not_negative("kh_npm", "N/m", "hysteretic stiffness");
+const EffectParameter kYieldDeformation = positive("dy_m", "m", "yield deformation of z");
 const EffectParameter kSmoothness =
-    within("exponent", "", 2.0, 0.5, 60, "n: sharpness of yielding, 1 round");
-const EffectParameter kUnloading = within(
-    "beta", "", 0.5, 0, 10,
-    "share of the loop's shape that dissipates; 0.5: unloading is linear, more: it stiffens");
+    within("exponent", "", 2.0, 0.5, 60, "n: sharpness of yielding; 1: round");
+const EffectParameter kUnloading =
+    within("beta", "", 0.5, 0, 10, "dissipating share of the loop; 0.5: linear unloading");
 
 const EffectParameter kStrengthLoss =
-    within("strength_loss", "", 0.0, 0, 10,
-           "a: strength falls by 1/(1 + a e), e the work of the hysteretic part over kh dy^2");
+    within("strength_loss", "", 0.0, 0, 10, "a: strength falls by 1/(1 + a e), e = work/(kh dy^2)");
 const EffectParameter kStiffnessLoss =
-    within("stiffness_loss", "", 0.0, 0, 10, "b: kh falls by 1/(1 + b e) while it loads");
+    within("stiffness_loss", "", 0.0, 0, 10, "b: kh falls by 1/(1 + b e) under loading");
 const EffectParameter kContactDamping =
-    within("cg_nspm", "N*s/m", 0.0, 0, kAny, "cg: dashpot beside the contact's spring");
+    within("cg_nspm", "N*s/m", 0.0, 0, kAny, "cg: contact damping");
 
 constexpr std::initializer_list<PlaceKind> kElement = {PlaceKind::frame, PlaceKind::panel};
 constexpr std::initializer_list<PlaceKind> kFrame = {PlaceKind::frame};
@@ -78,15 +74,14 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
        kElement,
        {either_sign("k2_npm2", "N/m^2", "quadratic stiffness")},
        "f = k2 d abs(d)",
-       "k2 > 0 hardens, k2 < 0 softens, alike in both directions.",
+       "k2 > 0 hardens, k2 < 0 softens, in both directions.",
        "Nayfeh and Mook, Nonlinear Oscillations, 1979"},
       {bilinear_hysteresis,
        "bilinear_hysteresis",
        kElement,
        {kHystereticStiffness, kYieldDeformation,
         within("spread", "", 0.0, 0, 1,
-               "s: the part is ten springs that yield one after the other, between dy (1 - s) and "
-               "dy (1 + s); 0: a single corner"),
+               "s: ten springs yield in turn between dy (1 - s) and dy (1 + s); 0: one corner"),
         kStrengthLoss},
        "f = kh z; z' = v while abs(z) < dy or z v < 0, else 0",
        kHystereticSign,
@@ -96,13 +91,11 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
        kElement,
        {kHystereticStiffness, kYieldDeformation, kSmoothness, kUnloading, kStrengthLoss,
         kStiffnessLoss,
-        within("loading", "", 1.0, -1, 1,
-               "g: share of the loop's shape while it loads; -1: it hardens, without an end")},
+        within("loading", "", 1.0, -1, 1, "g: shape of loading; -1: hardening without limit")},
        "f = kh z; z' = v/(1 + b e) (1 - (1 + a e) abs(z/dy)^n (beta sgn(v z) + g - beta)); "
        "e' = z v/dy^2",
        kHystereticSign,
-       "Wen, J. Eng. Mech. Div. 102 (1976), normalised so that z ends at dy; losses: Baber and "
-       "Wen, J. Eng. Mech. Div. 107 (1981)"},
+       "Wen, J. Eng. Mech. Div. 102 (1976); losses: Baber and Wen, J. Eng. Mech. Div. 107 (1981)"},
       {pinching,
        "pinching",
        kFrame,
@@ -111,23 +104,22 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
         kSmoothness,
         kUnloading,
         within("slip_ratio", "", std::nullopt, 0, 0.99,
-               "p: share of the stiffness that is lost where the force is small"),
-        {"slip_width", "", 0.2, 0, 50, true, "w: half width of the slip zone, in units of dy"},
-        within("slip_offset", "", 0.0, -1, 1, "q: where the slip zone is, in the direction of v"),
-        within("slip_work", "", 0.0, 0, 1e6, "E: work e in which it opens; 0: open from the start"),
-        within("slip_lock", "", 0.0, 0, 1, "1: the slip zone is about zero deformation, not force"),
+               "p: share of the stiffness lost at small force"),
+        {"slip_width", "", 0.2, 0, 50, true, "w: half width of the slip zone over dy"},
+        within("slip_offset", "", 0.0, -1, 1, "q: position of the slip zone along v"),
+        within("slip_work", "", 0.0, 0, 1e6, "E: work e to open the slip zone; 0: open at once"),
+        within("slip_lock", "", 0.0, 0, 1, "1: slip zone at zero deformation, not force"),
         kStrengthLoss,
         kStiffnessLoss,
-        within("slack", "", 0.0, 0, 1,
-               "1: a brace that yields and is slack by what it has yielded, in place of z"),
-        within("play_m", "m", 0.0, 0, kAny, "of such a brace: deformation that is slack at first")},
+        within("slack", "", 0.0, 0, 1, "1: a brace with slack from its yielding, instead of z"),
+        within("play_m", "m", 0.0, 0, kAny, "initial slack of the brace")},
        "f = kh z; z' = h v/(1 + b e) (1 - (1 + a e) abs(z/dy)^n (beta sgn(v z) + 1 - beta)); "
        "h = 1 - p (1 - exp(-e/E)) exp(-((z/dy sgn(v) - q)/w)^2), or with slip_lock d/dy in place "
        "of "
        "z/dy sgn(v) - q; e' = z v/dy^2; with slack f = kh (clip(d - u, 0, dy) - clip(-d - w, 0, "
        "dy)), "
        "u = max(play, largest d so far - dy), w the same of -d",
-       "As bouc_wen; p = 0 is bouc_wen.",
+       "Equals bouc_wen for p = 0.",
        "Baber and Noori, J. Eng. Mech. 111 (1985); Foliente, J. Struct. Eng. 121 (1995); slack: "
        "Tremblay and Filiatrault, Earthquake Eng. Struct. Dyn. 25 (1996)"},
   };
@@ -139,19 +131,17 @@ std::vector<EffectDescription> friction_contact_and_weight() {
        "coulomb_friction",
        kElement,
        {not_negative("fc_n", "N", "friction force"),
-        positive("v0_mps", "m/s", "velocity below which the force gives way smoothly"),
+        positive("v0_mps", "m/s", "velocity below which friction is smoothed"),
         within("stick_npm", "N/m", 0.0, 0, kAny,
-               "ks: slope while it sticks, in place of v0 and s; 0: rigid"),
-        within("static_ratio", "", 0.0, -0.9, 10, "s: fc (1 + s) at the onset of sliding"),
-        {"stribeck_mps", "m/s", 1.0, 0, kAny, true, "vs: velocity above which s is gone"},
-        within("presliding_m", "m", 0.0, 0, kAny,
-               "dp: deformation that it takes before it slides; 0: none")},
+               "ks: sticking stiffness, instead of v0 and s; 0: rigid"),
+        within("static_ratio", "", 0.0, -0.9, 10, "s: fc (1 + s) when sliding starts"),
+        {"stribeck_mps", "m/s", 1.0, 0, kAny, true, "vs: velocity above which s vanishes"},
+        within("presliding_m", "m", 0.0, 0, kAny, "dp: deformation before sliding; 0: none")},
        "f = fc g(v), g(v) = (1 + s exp(-(v/vs)^2)) tanh(v/v0); with dp: f = fc z; z' = (v - v z / "
        "g(v)) / dp; with ks: f = ks z; z' = v while abs(z) < fc/ks or z v < 0, else 0",
        "fc > 0 resists the velocity. Dissipates.",
-       "Den Hartog, Trans. ASME 53 (1931), regularised; Armstrong-Helouvry, Dupont and Canudas de "
-       "Wit, Automatica 30 (1994); Canudas de Wit and others, IEEE Trans. Autom. Control 40 "
-       "(1995)"},
+       "Den Hartog, Trans. ASME 53 (1931); Armstrong-Helouvry et al., Automatica 30 (1994); "
+       "Canudas de Wit et al., IEEE Trans. Autom. Control 40 (1995)"},
       {quadratic_damping,
        "quadratic_damping",
        kFrame,
@@ -163,25 +153,25 @@ std::vector<EffectDescription> friction_contact_and_weight() {
        "amplitude_dependence",
        kFrames,
        {within("softening", "", std::nullopt, -10, 1,
-               "r: share of their stiffness that all elements lose at the deformation at_m"),
-        positive("at_m", "m", "D: that deformation"),
-        within("exponent", "", 2.0, 1, 9, "p: of the deformation"),
-        within("damping_s2pm", "s^2/m", 0.0, -kAny, kAny, "g: of the squared rate"),
-        within("slip", "", 0.0, 0, 1, "s: share of the softening that is slip in joints")},
+               "r: share of stiffness lost at deformation at_m"),
+        positive("at_m", "m", "D: reference deformation"),
+        within("exponent", "", 2.0, 1, 9, "p: exponent of the deformation"),
+        within("damping_s2pm", "s^2/m", 0.0, -kAny, kAny, "g: coefficient of the squared rate"),
+        within("slip", "", 0.0, 0, 1, "s: share of softening from joint slip")},
        "f = k (-r D ((1 - s) x abs(x)^(p - 1) + s z(x)) + g v abs(v)), x = d/D, in every story of "
-       "the frame, or of all frames of the direction; z(x) is x abs(x)^(p - 1) at first loading "
-       "and, from every reversal on, twice that curve at half the size (Masing)",
-       "r > 0 softens, g > 0 resists the velocity. Dissipates where joints slip.",
+       "the frame or direction; z(x) = x abs(x)^(p - 1) at first loading, after reversals doubled "
+       "by Masing's rule",
+       "r > 0 softens, g > 0 resists the velocity. Joint slip dissipates.",
        "Nayfeh and Mook, Nonlinear Oscillations, 1979; Iwan, J. Appl. Mech. 33 (1966)"},
       {one_sided_gap,
        "one_sided_gap",
        kContact,
        {not_negative("kg_npm", "N/m", "stiffness in contact"),
         within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact"),
-        within("side", "", 1.0, -1, 1, "s: 1 closes toward positive deformation, -1 negative"),
+        within("side", "", 1.0, -1, 1, "s: 1 closes at positive deformation, -1 at negative"),
         kContactDamping},
-       "f = s max(kg (s d - g) + cg s v, 0) while s d > g; with to_story (0: the ground) d is "
-       "between two floors: a stop",
+       "f = s max(kg (s d - g) + cg s v, 0) while s d > g; with to_story, d is between two floors "
+       "(0: the ground)",
        "kg > 0 pushes back.",
        "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988)"},
       {two_sided_gap,
@@ -190,15 +180,15 @@ std::vector<EffectDescription> friction_contact_and_weight() {
        {not_negative("kg_npm", "N/m", "stiffness in contact"),
         within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact"),
         kContactDamping},
-       "one_sided_gap toward both sides",
-       "kg > 0 pushes back. A brace with play.",
+       "as one_sided_gap, in both directions",
+       "kg > 0 pushes back, such as a brace with play.",
        "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988)"},
       {p_delta,
        "p_delta",
        kFrame,
-       {not_negative("weight_n", "N", "W: weight that the frame story carries")},
+       {not_negative("weight_n", "N", "W: weight carried by the frame story")},
        "f = -(W/h) d, h the story height",
-       "W > 0 weakens. The same as a lower k: only known weights tell them apart.",
+       "W > 0 weakens. Equivalent to a lower k, unless weights are known.",
        "Wilson and Habibullah, Eng. J. AISC 24 (1987)"},
   };
 }
@@ -208,39 +198,37 @@ std::vector<EffectDescription> masses_and_rotations() {
       {extra_mass,
        "extra_mass",
        {PlaceKind::crossing},
-       {either_sign("mass_kg", "kg", "mass beside node_mass_kg")},
-       "m y'' grows by dm y'' in both directions at the crossing, and so does its inertia under "
-       "the ground's acceleration",
-       "dm > 0: heavier than configured.",
-       "Newton's second law"},
+       {either_sign("mass_kg", "kg", "dm: mass added to node_mass_kg")},
+       "adds dm y'' and dm times the ground acceleration at the crossing, in both directions",
+       "dm > 0 is heavier than configured.",
+       "Newton"},
       {tuned_mass_damper,
        "tuned_mass_damper",
        kNode,
-       {not_negative("mass_kg", "kg", "m: hidden mass, beside node_mass_kg"),
-        positive("frequency_hz", "Hz", "F: of the mass on its spring, the floor held"),
-        within("damping_ratio", "", std::nullopt, 0, 2, "h: likewise")},
+       {not_negative("mass_kg", "kg", "m: hidden mass, not in node_mass_kg"),
+        positive("frequency_hz", "Hz", "F: frequency with the floor fixed"),
+        within("damping_ratio", "", std::nullopt, 0, 2, "h: damping ratio of the absorber")},
        "m (q'' + a_abs) + c q' + k q = 0, q relative to the node, a_abs its absolute acceleration; "
        "k = m (2 pi F)^2; c = 2 h m 2 pi F; k q + c q' pulls the node",
-       "q > 0 pulls the node toward positive.",
+       "q > 0 pulls toward positive.",
        "Den Hartog, Mechanical Vibrations, 1956"},
       {base_rocking,
        "base_rocking",
        kBuilding,
        {positive("kr_nmprad", "N*m/rad", "K: rotational stiffness of the base")},
-       "every story's frames of the direction deform by d = drift - h_i phi, phi the base's "
-       "rotation; K phi = sum over stories of h_i k d (moment of the elastic story shears); "
-       "dashpots and added laws take the same d",
-       "Smaller K is softer; 1/K = 0 is none. phi > 0 leans toward positive.",
-       "Veletsos and Meek, Earthquake Eng. Struct. Dyn. 3 (1974), without rotary inertia"},
+       "d = drift - h_i phi in every story and frame of the direction, phi the base's rotation; K "
+       "phi = sum over stories of h_i k d; dashpots and added laws use this d",
+       "Smaller K is softer; 1/K = 0 is rigid. phi > 0 leans toward positive.",
+       "Veletsos and Meek, Earthquake Eng. Struct. Dyn. 3 (1974)"},
       {frame_bending,
        "frame_bending",
        kBuilding,
-       {positive("kr_nmprad", "N*m/rad", "K: rotational stiffness of every frame at every floor")},
-       "in each frame of the direction a hinge at every floor j = 0..N-1 turns all above it: "
-       "d_i = drift_i - h_i sum over j < i of phi_j; K phi_j = sum over i > j of h_i k_i d_i; "
-       "dashpots and added laws take the same d",
-       "Smaller K is softer; 1/K = 0 is none. phi > 0 leans toward positive.",
-       "Stafford Smith and Coull, Tall Building Structures, 1991, columns as hinged segments"},
+       {positive("kr_nmprad", "N*m/rad", "K: rotational stiffness per frame and floor")},
+       "d_i = drift_i - h_i sum over j < i of phi_j, a hinge at every floor j = 0..N-1 of each "
+       "frame of the direction; K phi_j = sum over i > j of h_i k_i d_i; dashpots and added laws "
+       "use this d",
+       "Smaller K is softer; 1/K = 0 is rigid. phi > 0 leans toward positive.",
+       "Stafford Smith and Coull, Tall Building Structures, 1991"},
   };
 }
 
@@ -249,42 +237,42 @@ std::vector<EffectDescription> springs_dampers_and_changes() {
       {added_spring,
        "added_spring",
        kNodePair,
-       {either_sign("k_npm", "N/m", "stiffness between the two floors")},
+       {either_sign("k_npm", "N/m", "k: stiffness")},
        "f = k (y_story - y_to_story), on one frame",
        "k > 0 resists.",
-       "Hooke's law"},
+       "Hooke"},
       {added_damper,
        "added_damper",
        kNodePair,
-       {not_negative("c_nspm", "N*s/m", "dashpot between the two floors")},
-       "f = c (y'_story - y'_to_story), on one frame; to_story = 0: the base",
+       {not_negative("c_nspm", "N*s/m", "c: damping")},
+       "f = c (y'_story - y'_to_story), on one frame",
        "c > 0 resists. Dissipates.",
-       "Newton's law of viscosity"},
+       "Newton"},
       {modal_damping,
        "modal_damping",
        kMode,
-       {within("damping_ratio", "", std::nullopt, 0, 2, "h: beside what dashpots give the mode")},
-       "f = 2 h w M phi phi' M y', phi the mode's shape, phi' M phi = 1, w its natural circular "
-       "frequency; both without damping and other effects than base_rocking and frame_bending",
-       "h > 0 resists. Dissipates. h = a/(2 w) in every mode is a damping a M.",
+       {within("damping_ratio", "", std::nullopt, 0, 2, "h: added to the ratio from dashpots")},
+       "f = 2 h w M phi phi' M y', phi the mode's shape with phi' M phi = 1, w its undamped "
+       "circular frequency; of other effects, only base_rocking and frame_bending count",
+       "h > 0 resists. Dissipates. h = a/(2 w) in every mode equals damping a M.",
        "Wilson and Penzien, Earthquake Eng. Struct. Dyn. 1 (1972)"},
       {stiffness_drop,
        "stiffness_drop",
        kElement,
-       {either_sign("dk_npm", "N/m", "change of the stiffness"),
-        within("at_s", "s", std::nullopt, 0, kLong_s, "t0: when")},
+       {either_sign("dk_npm", "N/m", "dk: change of stiffness"),
+        within("at_s", "s", std::nullopt, 0, kLong_s, "t0: time of the drop")},
        "f = dk d from t0 on",
        "dk < 0 loses stiffness.",
-       "Shintani, Yoshitomi and Takewaki, Front. Built Environ. 5:103 (2019), section on damage"},
+       "Shintani et al., Front. Built Environ. 5:103 (2019)"},
       {stiffness_drift,
        "stiffness_drift",
        kElement,
-       {either_sign("dk_npm", "N/m", "change of the stiffness at the end"),
-        within("from_s", "s", 0.0, 0, kLong_s, "t0: when it begins"),
-        {"duration_s", "s", std::nullopt, 0, kLong_s, true, "T: how long it takes"}},
+       {either_sign("dk_npm", "N/m", "dk: final change of stiffness"),
+        within("from_s", "s", 0.0, 0, kLong_s, "t0: start"),
+        {"duration_s", "s", std::nullopt, 0, kLong_s, true, "T: duration"}},
        "f = dk clip((t - t0)/T, 0, 1) d",
        "dk < 0 loses stiffness.",
-       "Clinton et al., Bull. Seismol. Soc. Am. 96 (2006): wander of frequencies"},
+       "Clinton et al., Bull. Seismol. Soc. Am. 96 (2006)"},
   };
 }
 
@@ -293,25 +281,25 @@ std::vector<EffectDescription> floors_and_forces() {
       {floor_flexibility,
        "floor_flexibility",
        {PlaceKind::floor},
-       {positive("gk_nprad", "N/(rad*m)", "G: shear stiffness of each panel of the floor"),
-        not_negative("gc_nsprad", "N*s/(rad*m)", "its damping")},
-       "the floor of a building with floor = \"rigid\" moves as with floor = \"flexible\"",
+       {positive("gk_nprad", "N/(rad*m)", "G: shear stiffness of each panel"),
+        not_negative("gc_nsprad", "N*s/(rad*m)", "damping of each panel")},
+       "one floor of a building with floor = \"rigid\" becomes flexible",
        "Smaller G is softer; 1/G = 0 is rigid.",
-       "Shintani, Yoshitomi and Takewaki, Front. Built Environ. 5:103 (2019), equation (12)"},
+       "Shintani et al., Front. Built Environ. 5:103 (2019), equation (12)"},
       {unmeasured_force,
        "unmeasured_force",
        kNode,
-       {within("amplitude_n", "N", 0.0, 0, kAny, "F: of a harmonic force"),
-        {"frequency_hz", "Hz", 1.0, 0, 1e4, true, "f: of the harmonic force"},
-        within("phase_rad", "rad", 0.0, -100, 100, "p: of the harmonic force"),
-        within("rms_n", "N", 0.0, 0, kAny, "of a stationary Gaussian force with a flat band"),
-        within("low_hz", "Hz", 0.1, 0, 1e4, "the band's lower end"),
-        {"high_hz", "Hz", 10.0, 0, 1e4, true, "the band's upper end"},
-        within("seed", "", 1.0, 0, 9e15, "of the Gaussian force"),
-        within("from_s", "s", 0.0, 0, kLong_s, "no force before")},
+       {within("amplitude_n", "N", 0.0, 0, kAny, "F: harmonic amplitude"),
+        {"frequency_hz", "Hz", 1.0, 0, 1e4, true, "f: harmonic frequency"},
+        within("phase_rad", "rad", 0.0, -100, 100, "p: harmonic phase"),
+        within("rms_n", "N", 0.0, 0, kAny, "rms of a stationary Gaussian force"),
+        within("low_hz", "Hz", 0.1, 0, 1e4, "lower end of its flat band"),
+        {"high_hz", "Hz", 10.0, 0, 1e4, true, "upper end of its flat band"},
+        within("seed", "", 1.0, 0, 9e15, "seed of the Gaussian force"),
+        within("from_s", "s", 0.0, 0, kLong_s, "start of the force")},
        "p(t) = F sin(2 pi f t + p) + Gaussian force, on one degree of freedom",
        "Positive pushes toward +x or +y.",
-       "Wind and machines: Chopra, Dynamics of Structures, 2017"},
+       "Chopra, Dynamics of Structures, 2017"},
   };
 }
 
@@ -337,12 +325,12 @@ std::vector<EffectDescription> sensor_errors() {
        kChannel,
        {within("shift_s", "s", std::nullopt, -0.5, 0.5, "T: delay")},
        "out(t) = a(t - T)",
-       "T > 0: the channel is late.",
-       "definition of a delay"},
+       "T > 0 is late.",
+       "definition"},
       {clipping,
        "clipping",
        kChannel,
-       {positive("level_mps2", "m/s^2", "L: largest value")},
+       {positive("level_mps2", "m/s^2", "L: largest magnitude")},
        "out = min(max(a, -L), L)",
        "",
        "IEEE Std 1293"},
@@ -350,21 +338,15 @@ std::vector<EffectDescription> sensor_errors() {
        "bias_drift",
        kChannel,
        {either_sign("ramp_mps3", "m/s^2 per s", "slope"),
-        within("from_s", "s", 0.0, 0, kLong_s, "t0: when it begins")},
+        within("from_s", "s", 0.0, 0, kLong_s, "t0: start")},
        "out = a + ramp max(t - t0, 0)",
        "ramp > 0 rises.",
        "IEEE Std 1293"},
-      {swapped,
-       "swapped",
-       kChannelPair,
-       {},
-       "out = a_with, out_with = a: the two channels' motions are exchanged",
-       "",
-       "wiring"},
+      {swapped, "swapped", kChannelPair, {}, "out = a_with, out_with = a", "", "wiring"},
   };
 }
 
-/// In the order of EffectKind.
+/// Returns the descriptions in the order of EffectKind.
 std::vector<EffectDescription> make_catalogue() {
   std::vector<EffectDescription> out;
   for (const auto& part :

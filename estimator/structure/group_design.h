@@ -7,18 +7,20 @@
 
 namespace framewatch::estimator {
 
-/// What the building is for parameters as designed.
+/// The design of the building as designed parameters.
 struct GroupDesign {
-  Eigen::VectorXd theta;  ///< every story's, in the order of ParameterTable(structure), SI
+  /// Parameters of every story, in the order of ParameterTable(structure), SI.
+  Eigen::VectorXd theta;
   BendingStiffness bending_nmprad{};
 };
 
-/// The parameters of groups, table order, SI: stories in series, frames of a group side by side.
+/// Returns the parameters of the groups in table order, SI. Stories of a group act in series,
+/// frames in parallel.
 Eigen::VectorXd group_parameters(const Structure& structure, const ParameterTable& table,
                                  const GroupDesign& design);
 
-/// Parameters of every story, in the order of ParameterTable(structure), from those of groups: each
-/// story keeps its share of the design.
+/// Returns the parameters of every story, in the order of ParameterTable(structure), for the
+/// groups' parameters `of_groups`. Each story keeps its share of the design.
 Eigen::VectorXd story_parameters(const Structure& structure, const ParameterTable& table,
                                  const GroupDesign& design, const Eigen::VectorXd& of_groups);
 

@@ -6,7 +6,7 @@
 namespace framewatch::estimator {
 namespace {
 
-/// Plan coordinates of the frame lines, from the first of each direction.
+/// Returns the plan coordinates of the frame lines of one direction, m, from the first one.
 std::vector<double> lines(const std::vector<double>& spans) {
   std::vector<double> at{0.0};
   for (const double span : spans) at.push_back(at.back() + span);

@@ -9,18 +9,27 @@
 
 namespace framewatch::estimator {
 
-/// The lowest undamped natural frequency, Hz. Unlike all of them it takes a large building no
-/// longer than a few solutions of its banded equations.
+/// Returns the lowest undamped natural frequency, Hz. For a large building it costs a few solutions
+/// of banded equations, much less than all frequencies.
 double lowest_frequency_hz(const Structure& structure, const ParameterTable& table,
                            const Eigen::VectorXd& theta);
 
-/// Undamped natural frequencies, ascending, Hz. Dense: the cube of the degrees of freedom.
+/// Returns the undamped natural frequencies, ascending, Hz. Dense: the cost is the cube of the
+/// degrees of freedom.
 std::vector<double> natural_frequencies_hz(const Structure& structure, const ParameterTable& table,
                                            const Eigen::VectorXd& theta);
 
-/// theta with every stiffness given and damping proportional to it, C = (2 h / w1) K, where w1 is
-/// the lowest undamped natural circular frequency: how the paper's examples set damping.
+/// Returns theta with its stiffnesses and with damping proportional to them: C = (2 h / w1) K,
+/// where w1 is the lowest undamped natural circular frequency and h is damping_ratio. The paper's
+/// examples set damping this way.
 Eigen::VectorXd with_proportional_damping(const Structure& structure, const ParameterTable& table,
                                           Eigen::VectorXd theta, double damping_ratio);
+
+/// Returns how much ground motion shears each floor panel: its largest deformation over the largest
+/// frame deformation, for ground motion along x, y and obliquely at the first twelve natural
+/// frequencies. The order is that of the panel stiffnesses in theta. A symmetric plan gives zero up
+/// to rounding; no record identifies its panels.
+std::vector<double> panel_excitation(const Structure& structure, const ParameterTable& table,
+                                     const Eigen::VectorXd& theta);
 
 }  // namespace framewatch::estimator

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "estimator/structure/place_names.h"
+#include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 

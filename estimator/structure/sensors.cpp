@@ -58,8 +58,8 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
         add("cross_channel",
             "channel '" + other.name + "' does not measure the other direction on the same floor");
       else if (std::abs(a.mount_angle - other.mount_angle) > kSteepest)
-        add("mount_angle_deg", "and that of '" + other.name +
-                                   "' leave the axes nearly parallel: over 60 degrees apart");
+        add("mount_angle_deg", "differs from that of '" + other.name +
+                                   "' by more than 60 degrees: the axes are nearly parallel");
     }
     if (a.story < 0 || a.story > s.stories) {
       add("story", "story " + std::to_string(a.story) + " does not exist, 0 (base) to " +
@@ -85,7 +85,7 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
     }
     const int place = a.frame >= 0 ? a.frame : (a.direction == Direction::x ? -1 : -2);
     const auto [at, fresh] = places.emplace(std::tuple(a.story, place, a.is_force), a.name);
-    if (!fresh) add("", "sits where channel '" + at->second + "' sits already");
+    if (!fresh) add("", "is at the same place as channel '" + at->second + "'");
   }
   const auto missing = [&](const std::string& what) {
     found.push_back({"", -1, "channels: no " + what});

@@ -9,67 +9,67 @@
 
 namespace framewatch::estimator {
 
-/// Where in plan an axis that rides on no frame sits, and where it points.
+/// Position and direction in plan of an axis that is not on a frame.
 struct PlanPlace {
   double x_m = 0;        ///< from the first y-parallel frame
   double y_m = 0;        ///< from the first x-parallel frame
-  double angle_rad = 0;  ///< of its positive axis, counter-clockwise from +x
+  double angle_rad = 0;  ///< direction of the positive axis, counter-clockwise from +x
 };
 
-/// One accelerometer axis and where it sits. Its corrected value, m/s^2, absolute, positive toward
-/// +x or +y, is polarity * (scale * raw - offset), freed from gravity and from the other horizontal
-/// direction where the axis is mounted at an angle (Calibration). Or a force that a shaker or a
-/// hammer applies to the building there, N, of the same signs: where this says m/s^2, read N.
+/// One accelerometer axis and its place. Its corrected value is the absolute acceleration toward +x
+/// or +y, m/s^2: polarity * (scale * raw - offset), without gravity and, on an axis mounted at an
+/// angle, without the other horizontal direction (Calibration). An axis can also be a force that a
+/// shaker or a hammer applies to the building; its values are in N with the same signs.
 struct SensorAxis {
   std::string name;
   int story = 0;                       ///< 0 = base
-  Direction direction = Direction::x;  ///< of the measured motion
-  int frame = -1;                      ///< frame it rides on; -1 for a base axis of the whole plan
-  std::optional<PlanPlace> plan = {};  ///< instead of a frame; direction is then the nearer one
+  Direction direction = Direction::x;  ///< direction of the measured motion
+  int frame = -1;  ///< frame that carries the axis; -1 for a base axis of the whole plan
+  std::optional<PlanPlace> plan = {};  ///< replaces `frame`; `direction` is then the nearer one
   double scale = 1.0;
-  double offset = 0.0;         ///< m/s^2, subtracted after scaling
-  double polarity = 1.0;       ///< +1 or -1
-  double delay = 0.0;          ///< s, true sample instant = stamp - delay
-  double tilt = 0.0;           ///< rad, of the positive axis above the horizontal
-  double mount_angle = 0.0;    ///< rad, counter-clockwise in plan from the direction it stands for
-  int cross = -1;              ///< axis of the other direction that corrects for mount_angle
-  double range = 0.0;          ///< m/s^2 of scale * raw, at which it clips; 0 = unknown
-  double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0 = unknown
-  bool check = false;          ///< compared with what the others predict, not identified from
-  bool is_force = false;       ///< of the building, not of an accelerometer
-  /// Of the base at a place in plan, positive upward; its direction says nothing then. Several show
-  /// how the base rocks (base_rotations()).
+  double offset = 0.0;       ///< m/s^2, subtracted after scaling
+  double polarity = 1.0;     ///< +1 or -1
+  double delay = 0.0;        ///< s, true sample instant = stamp - delay
+  double tilt = 0.0;         ///< rad, elevation of the positive axis above the horizontal
+  double mount_angle = 0.0;  ///< rad, counter-clockwise in plan from `direction`
+  int cross = -1;  ///< axis of the other direction that corrects for mount_angle; -1: not corrected
+  double range = 0.0;  ///< m/s^2, value of scale * raw at which the sensor clips; 0: unknown
+  double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0: unknown
+  bool check = false;          ///< compared with the prediction, not used for identification
+  bool is_force = false;       ///< measures a force on the building
+  /// A vertical axis of the base, positive upward, at a place in plan. Its direction has no
+  /// meaning. Several of them show how the base rocks (base_rotations()).
   bool vertical = false;
 
-  /// An accelerometer that measures along x or y.
+  /// Returns true for an accelerometer that measures along x or y.
   bool horizontal() const { return !is_force && !vertical; }
 };
 
-/// "x", "y", or "z" of a vertical one.
+/// Returns "x" or "y", or "z" for a vertical axis.
 inline const char* letter(const SensorAxis& axis) {
   return axis.vertical ? "z" : letter(axis.direction);
 }
 
-/// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
-/// axes matter to the estimate: the level is taken from the residuals.
+/// Noise of a sensor before it is configured or measured, m/s^2/sqrt(Hz). Only ratios between axes
+/// matter to the estimate: the residuals give the level.
 inline constexpr double kDefaultNoiseDensity = 1e-4;
-/// Configured noise of every axis, kDefaultNoiseDensity where it is not.
+/// Returns the configured noise of every axis, or kDefaultNoiseDensity where it is not configured.
 std::vector<double> noise_densities(const std::vector<SensorAxis>& axes);
 
-/// Flags of the axes that are identified from: all but those for a check.
+/// Returns a flag for each axis: 1 if it is used for identification, 0 for a check axis.
 std::vector<std::uint8_t> identifying(const std::vector<SensorAxis>& axes);
-/// Whether any axis is a force: without base axes the base then rests.
+/// Returns true if any axis is a force. Without base axes the base is then at rest.
 bool has_force(const std::vector<SensorAxis>& axes);
-/// Accelerometers along x or y, in their order.
+/// Returns the accelerometers along x or y, in their order.
 std::vector<SensorAxis> horizontals(const std::vector<SensorAxis>& axes);
 
-/// Every way in which the sensors do not fit the structure: two axes on one frame, a frame or story
-/// that does not exist, a direction that is measured above the base and not there (unless a force
-/// drives the building and the base rests), no axis above the base, a force on the base. A
-/// problem's index is that of the axis. Which places are left without a sensor is no problem:
-/// StoryGroups says what such a layout shows.
+/// Returns every way in which the sensors do not fit the structure; a problem's index is that of
+/// the axis. Problems are two axes on one frame, a missing frame or story, a force on the base, no
+/// axis above the base, and a direction that is measured above the base but not there. The last one
+/// is allowed if a force drives the building and the base is at rest. Places without a sensor are
+/// allowed: StoryGroups describes what such a layout shows.
 std::vector<Problem> find_problems(const Structure& structure, const std::vector<SensorAxis>& axes);
-/// Their messages.
+/// Returns the messages of find_problems().
 std::vector<std::string> problems(const Structure& structure, const std::vector<SensorAxis>& axes);
 
 }  // namespace framewatch::estimator

@@ -15,7 +15,8 @@ Line lines_of(const Structure& s, Direction direction) {
   return direction == Direction::x ? Line{0, s.n()} : Line{s.n(), s.m()};
 }
 
-/// Adds `share` of the floor's motion along a direction at a position across it.
+/// Adds `share` of the floor's motion along `direction` at position `at_m` across it to the frames'
+/// weights.
 void add_motion(const Structure& s, Direction direction, double at_m, double share,
                 std::vector<double>& weights) {
   const Line line = lines_of(s, direction);
@@ -26,7 +27,7 @@ void add_motion(const Structure& s, Direction direction, double at_m, double sha
     add(line.first, share);
     const Line other = lines_of(s, direction == Direction::x ? Direction::y : Direction::x);
     if (!rigid || other.count < 2) return;
-    // The other direction's frames show how the floor turns.
+    // The frames of the other direction show how the floor rotates.
     const int a = other.first, b = other.first + other.count - 1;
     const double arm = (at_m - line_position(s, line.first)) /
                        (line_position(s, b) - line_position(s, a)) * -share;
@@ -49,7 +50,7 @@ bool measures(const Structure& s, const SensorAxis& axis, Direction direction) {
   return (axis.frame >= 0 ? s.direction(axis.frame) : axis.direction) == direction;
 }
 
-/// Whether the axes of every measured floor show both translations and the rotation.
+/// Returns true if the axes of every measured floor show both translations and the rotation.
 bool shows_rotation(const Structure& s, const std::vector<SensorAxis>& axes) {
   for (int story = 1; story <= s.stories; ++story) {
     std::vector<std::vector<double>> rows;
@@ -83,8 +84,8 @@ bool shows_rotation(const Structure& s, const std::vector<SensorAxis>& axes) {
   return true;
 }
 
-/// Groups of a set of frames whose measured floors are given, ascending; above the highest one the
-/// building goes on with one group more.
+/// Appends the groups of a set of frames. `floors` are their measured floors, ascending. Stories
+/// above the highest one form a further group.
 void add_groups(const Structure& s, Direction direction, const std::vector<int>& frames,
                 std::vector<int> floors, const WantedGroups& wanted, std::vector<StoryGroup>& out) {
   if (floors.empty()) return;
@@ -139,7 +140,7 @@ void add_flexible_groups(const Structure& s, const std::vector<SensorAxis>& axes
   for (int f = line.first; f < line.first + line.count; ++f)
     if (!floors_where(s, axes, [&](const SensorAxis& a) { return a.frame == f; }).empty())
       measured.push_back(f);
-  if (measured.empty())  // axes between the frames
+  if (measured.empty())  // all axes are between the frames
     return add_rigid_groups(s, axes, direction, false, wanted, out);
   std::vector<std::vector<int>> sets(measured.size());
   for (int f = line.first; f < line.first + line.count; ++f) {

@@ -3,27 +3,33 @@
 #include <string>
 #include <vector>
 
-#include "estimator/structure/problem.h"
-
 namespace framewatch::estimator {
 
-/// Axis a frame is parallel to, and along which its floors and sensors move.
+/// One broken rule of a description and the part that breaks it.
+struct Problem {
+  std::string field;  ///< configuration key of the part; empty if a part is missing
+  int index = -1;     ///< of the sensor axis; -1 for the structure
+  std::string message;
+};
+
+/// The direction that a frame is parallel to, and along which its floors and sensors move.
 enum class Direction { x, y };
 
-/// "x" or "y".
+/// Returns "x" or "y".
 inline const char* letter(Direction direction) {
   return direction == Direction::x ? "x" : "y";
 }
 
-/// flexible: every floor panel shears in its plane; rigid: a floor moves as one body (diaphragm).
+/// flexible: every floor panel shears in its plane. rigid: each floor moves as one body
+/// (diaphragm).
 enum class FloorModel { flexible, rigid };
 
 /// The monitored building's static description. SI units.
 ///
-/// Frames at one floor are numbered 0..n-1 for the x-parallel ones (in order of y) and n..n+m-1 for
-/// the y-parallel ones (in order of x); each has one horizontal degree of freedom per floor, along
-/// its own plane, positive toward +x or +y. Stories are numbered 1..N, floor i on top of story i,
-/// floor 0 the ground. Either direction may have no frame: a plane building.
+/// The frames of a floor are numbered 0..n-1 for the x-parallel ones (in order of y) and n..n+m-1
+/// for the y-parallel ones (in order of x). Each has one horizontal degree of freedom per floor,
+/// along its plane, positive toward +x or +y. Stories are numbered 1..N; floor i is on top of story
+/// i, floor 0 is the ground. In a plane building, one direction has no frame.
 struct Structure {
   std::string name;
   int stories = 0;
@@ -40,25 +46,33 @@ struct Structure {
   int m() const { return static_cast<int>(frames_y.size()); }
   int frames() const { return n() + m(); }
   int degrees_of_freedom() const { return stories * frames(); }
-  /// Floor panels per floor, (n-1)(m-1); none when rigid or plane.
+  /// Returns the number of panels per floor, (n-1)(m-1), or 0 if floors are rigid or the building
+  /// is plane.
   int panels() const;
   Direction direction(int frame) const { return frame < n() ? Direction::x : Direction::y; }
   const std::string& frame_name(int frame) const;
-  /// Index of the degree of freedom of `frame` at floor `story`: story-major.
+  /// Returns the index of the degree of freedom of `frame` at floor `story`, story-major.
   int dof(int story, int frame) const { return (story - 1) * frames() + frame; }
-  /// Mass that moves with `frame` at floor `story`, kg: sum over the nodes on it (A13, A14).
+  /// Returns the mass that moves with `frame` at floor `story`, kg: the sum over the nodes on it
+  /// (A13, A14).
   double frame_mass(int story, int frame) const;
-  /// Number of node masses the description must hold.
+  /// Returns the number of node masses that the description needs.
   int nodes() const;
 };
 
-/// Whether frames along `direction` are so tall, ten stories, or so slender, three times as high as
-/// wide, that they bend as a whole: their columns lengthen and shorten.
+/// Returns true if frames along `direction` bend as a whole because their columns lengthen and
+/// shorten: from ten stories on, or if the building is more than three times as high as wide.
 bool bends_as_a_whole(const Structure& structure, Direction direction);
 
-/// Every way in which `structure` is not a building; empty when it is one.
+/// Returns every way in which `structure` is not a building; empty if it is one.
 std::vector<Problem> find_problems(const Structure& structure);
-/// Their messages.
+/// Returns the messages of find_problems().
 std::vector<std::string> problems(const Structure& structure);
+
+/// Returns the name of a crossing: x1y1, the y-parallel frame, then the x-parallel one. In a plane
+/// building it is the name of the one frame.
+std::string crossing_name(const Structure& structure, int crossing);
+/// Returns the name of a panel: that of the crossing where its spans start, as in Gk_2_x1y1.
+std::string panel_name(const Structure& structure, int panel);
 
 }  // namespace framewatch::estimator

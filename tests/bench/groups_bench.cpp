@@ -29,14 +29,16 @@ double shift_us(estimator::PipelineConfig config, const Eigen::MatrixXd& accel) 
   config.options.other_windows_s.clear();
   config.options.boxplot_windows = 1;
   int valid = 0;
-  estimator::Pipeline pipeline(config, [&](const estimator::WindowEstimate& e) {
+  const auto take = [&](const estimator::WindowEstimate& e) {
     valid += e.status == estimator::WindowStatus::valid ? 1 : 0;
-  });
+  };
+  estimator::Pipeline pipeline(config);
   std::vector<double> times;
   for (Eigen::Index i = 0; i < accel.rows(); ++i) {
     const estimator::Time time = estimator::from_microseconds(10'000 * i);
     const double begin = wall_us();
-    for (int a = 0; a < accel.cols(); ++a) pipeline.push({time, a, accel(i, a)});
+    for (int a = 0; a < accel.cols(); ++a)
+      estimator::each_main_window(pipeline.push({time, a, accel(i, a)}), take);
     if (static_cast<double>(i) > kFrom_s * daemon::kTrialRate_hz)
       times.push_back(wall_us() - begin);
   }

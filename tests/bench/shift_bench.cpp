@@ -144,11 +144,13 @@ class FrontEnd {
                                                          estimator::matched_triple(100)),
                 estimator::HighPass(config.options.high_pass_hz, 100)),
         set_(deformations_.make_set()),
-        acquisition_(config.axes, config.options, [this](const estimator::SampleSet& samples) {
-          filter_.push(samples.accel);
-          deformations_.compute(filter_, set_);
-        }) {}
-  void push(const estimator::AccelSample& sample) { acquisition_.push(sample); }
+        acquisition_(config.axes, config.options) {}
+  void push(const estimator::AccelSample& sample) {
+    for (const estimator::SampleSet& samples : acquisition_.push(sample)) {
+      filter_.push(samples.accel);
+      deformations_.compute(filter_, set_);
+    }
+  }
 
  private:
   estimator::ParameterTable table_;

@@ -26,10 +26,9 @@ Announcer::Announcer(const estimator::PipelineConfig& config,
                      const estimator::WatchOptions& options)
     : config_(watched_config(config, options)),
       table_(config_.pipeline.parameters()),
-      estimation_(config_, {}) {
+      estimation_(config_, {}, this) {
   for (const estimator::Watched& w : watched_parameters(table_, options))
     watched_.push_back(w.least_change > 0);
-  estimation_.tap({{}, {}, {}, [this](const event_t& e) { event(e); }, {}, {}});
 }
 
 void Announcer::push(const estimator::AccelSample& sample) {
@@ -49,7 +48,7 @@ bool Announcer::knows(int parameter) const {
 /// Today's event: one element in `place`, its change in per cent. Several elements would be
 /// separated by commas. A place that is no element is the whole building; an event without a
 /// standard error has no size yet.
-void Announcer::event(const event_t& e) {
+void Announcer::on_event(const event_t& e) {
   if (e.kind != kKind) return;
   Announcement out;
   out.at_s = std::max(now_s_, 1e-6 * static_cast<double>(e.time_us));

@@ -24,7 +24,7 @@ struct Announcement {
 /// Runs the daemon's estimation in this process, the way live samples take, and reads what it says
 /// of changes. This is the only place of the study that knows how the program says it: when events
 /// change, change announcements.cpp.
-class Announcer {
+class Announcer : private daemon::EstimationListener {
  public:
   /// The baseline is learned. `config` is without problems; its long window is switched off.
   Announcer(const estimator::PipelineConfig& config, const estimator::WatchOptions& options);
@@ -40,7 +40,7 @@ class Announcer {
   const estimator::ParameterTable& table() const { return table_; }
 
  private:
-  void event(const event_t& event);
+  void on_event(const event_t& event) override;
 
   daemon::Config config_;
   estimator::ParameterTable table_;

@@ -242,16 +242,18 @@ InterruptionResult run_interruption(const InterruptionCase& of) {
   if (of.design_off) config.design = design_off(config, kDesignOff, of.seed);
   Collector collector(table, truth, record);
   const auto take = [&](const estimator::WindowEstimate& e) { collector.take(e); };
-  estimator::Pipeline pipeline(config, take, take);
+  estimator::Pipeline pipeline(config);
   for (Eigen::Index i = 0; i < record.accel.rows(); ++i) {
     const double time_s = static_cast<double>(i) / kRate_hz;
     collector.newest(time_s);
     for (int a = 0; a < record.accel.cols(); ++a)
       if (record.delivered(time_s, a))
-        pipeline.push(
-            {estimator::from_microseconds(std::llround(1e6 * time_s)), a, record.accel(i, a)});
+        estimator::each_window(
+            pipeline.push(
+                {estimator::from_microseconds(std::llround(1e6 * time_s)), a, record.accel(i, a)}),
+            take);
   }
-  pipeline.finish();
+  estimator::each_window(pipeline.finish(), take);
   return collector.result();
 }
 

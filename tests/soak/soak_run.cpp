@@ -74,7 +74,7 @@ struct Node {
   }
 };
 
-class Soak {
+class Soak : private daemon::EstimationListener {
  public:
   explicit Soak(const SoakOptions& options)
       : options_(options),
@@ -86,11 +86,7 @@ class Soak {
             config_,
             [this](std::int64_t, const std::string& channel,
                    const std::vector<std::uint8_t>& bytes) { published(channel, bytes); },
-            [this](const estimator::WindowEstimate& e) { window(e); }) {
-    estimation_.tap({[this](const estimator::AccelSample& sample) { history_->sample(sample); },
-                     [this](const temperature_t& t) { history_->temperature(t); },
-                     {},
-                     {}});
+            this) {
     for (const daemon::AxisSource& source : config_.sources)
       nodes_.emplace_back(source.sensor_node, source.axis);
   }
@@ -114,7 +110,9 @@ class Soak {
  private:
   void step(std::int64_t i);
   void published(const std::string& channel, const std::vector<std::uint8_t>& bytes);
-  void window(const estimator::WindowEstimate& e);
+  void on_sample(const estimator::AccelSample& sample) override { history_->sample(sample); }
+  void on_temperature(const temperature_t& t) override { history_->temperature(t); }
+  void on_estimate(const estimator::WindowEstimate& e) override;
   void look_at_memory(std::int64_t time_us);
   void compare_sums(const estimator::WindowEstimate& e);
   double difference(const estimator::WindowEstimate& e, std::size_t from) const;
@@ -207,7 +205,7 @@ void Soak::published(const std::string& channel, const std::vector<std::uint8_t>
   result_.long_values += estimate && estimate->status == 1 ? 1 : 0;
 }
 
-void Soak::window(const estimator::WindowEstimate& e) {
+void Soak::on_estimate(const estimator::WindowEstimate& e) {
   ++result_.windows;
   if (last_end_) {
     const auto hop = std::chrono::duration<double>(e.end - *last_end_).count();
@@ -227,19 +225,21 @@ double Soak::difference(const estimator::WindowEstimate& e, std::size_t from) co
   config.options.long_window_s = 0;
   config.options.hop_s = 0.01;
   double least = 1;
-  estimator::Pipeline pipeline(config, [&](const estimator::WindowEstimate& other) {
+  const auto take = [&](const estimator::WindowEstimate& other) {
     if (other.end != e.end || other.status == estimator::WindowStatus::warming_up) return;
     double most = 0;
     for (std::size_t p = 0; p < e.solution.size(); ++p)
       most = std::max(most, std::abs(e.solution[p] / other.solution[p] - 1));
     least = most;
-  });
+  };
+  estimator::Pipeline pipeline(config);
   for (std::size_t i = from; i < kept_.size(); ++i)
     for (std::size_t a = 0; a < kept_[i].second.size(); ++a)
       if (!std::isnan(kept_[i].second[a]))
-        pipeline.push({estimator::from_microseconds(kept_[i].first), static_cast<int>(a),
-                       kept_[i].second[a]});
-  pipeline.finish();
+        estimator::each_main_window(pipeline.push({estimator::from_microseconds(kept_[i].first),
+                                                   static_cast<int>(a), kept_[i].second[a]}),
+                                    take);
+  estimator::each_main_window(pipeline.finish(), take);
   return least;
 }
 

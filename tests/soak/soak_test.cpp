@@ -68,12 +68,13 @@ TEST(Soak, AWindowThatHoldsLessNoiseThanIsTakenOffSaysNothing) {
       windows += p == 0 ? 1 : 0;
     }
   };
-  estimator::Pipeline pipeline(config, look, look);
+  estimator::Pipeline pipeline(config);
   for (std::int64_t i = 0; i < static_cast<std::int64_t>(kSeconds * kRate_hz); ++i) {
     const Instant instant = night.next();
     for (std::size_t a = 0; a < instant.accel->size(); ++a)
-      pipeline.push({estimator::from_microseconds(instant.time_us), static_cast<int>(a),
-                     (*instant.accel)[a]});
+      estimator::each_window(pipeline.push({estimator::from_microseconds(instant.time_us),
+                                            static_cast<int>(a), (*instant.accel)[a]}),
+                             look);
   }
   EXPECT_GT(windows, 0);
 }

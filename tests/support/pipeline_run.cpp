@@ -44,13 +44,14 @@ estimator::AccelSample sample_at(const Eigen::MatrixXd& accel, double rate_hz, i
 PipelineRun run_pipeline(const estimator::PipelineConfig& config, const Eigen::MatrixXd& accel,
                          const Delivered& delivered) {
   PipelineRun run;
-  estimator::Pipeline pipeline(
-      config, [&](const estimator::WindowEstimate& e) { run.estimates.push_back(e); });
+  const auto take = [&](const estimator::WindowEstimate& e) { run.estimates.push_back(e); };
+  estimator::Pipeline pipeline(config);
   for (int t = 0; t < accel.rows(); ++t)
     for (int axis = 0; axis < accel.cols(); ++axis)
       if (!delivered || delivered(t, axis))
-        pipeline.push(sample_at(accel, config.options.rate_hz, t, axis));
-  pipeline.finish();
+        estimator::each_main_window(
+            pipeline.push(sample_at(accel, config.options.rate_hz, t, axis)), take);
+  estimator::each_main_window(pipeline.finish(), take);
   run.counters = pipeline.counters();
   return run;
 }

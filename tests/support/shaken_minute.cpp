@@ -49,11 +49,13 @@ void ShakenMinute::run(std::uint64_t seed, bool damaged,
       {},
       daemon::perturbed_design(table_, daemon::table1_theta(), 0.1, 0.3, seed + 77)};
   config.options.hop_s = 0.25;
-  estimator::Pipeline pipeline(config, take, take);
+  estimator::Pipeline pipeline(config);
   for (Eigen::Index i = 0; i < accel.rows(); ++i)
     for (Eigen::Index a = 0; a < accel.cols(); ++a)
-      pipeline.push({estimator::from_microseconds(10'000 * i), static_cast<int>(a), accel(i, a)});
-  pipeline.finish();
+      estimator::each_window(pipeline.push({estimator::from_microseconds(10'000 * i),
+                                            static_cast<int>(a), accel(i, a)}),
+                             take);
+  estimator::each_window(pipeline.finish(), take);
 }
 
 }  // namespace framewatch::test

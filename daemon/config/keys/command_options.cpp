@@ -12,9 +12,9 @@ const Option kOptions[] = {
     {.section = "commands",
      .key = "directory",
      .type = text,
-     .meaning = "Of the sockets `<prefix>run` and `<prefix>record`, where these two take commands. "
-                "Without it the service's own, /run/framewatch; for what you start yourself "
-                "$XDG_RUNTIME_DIR/framewatch, or /tmp/framewatch-UID.",
+     .meaning =
+         "Directory of the sockets `<prefix>run` and `<prefix>record`. Default: /run/framewatch "
+         "for the service; else $XDG_RUNTIME_DIR/framewatch, or /tmp/framewatch-UID.",
      .reload = restart,
      .is_path = true,
      .target = into<&CommandSettings::directory>},

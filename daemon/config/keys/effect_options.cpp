@@ -20,22 +20,23 @@ class EffectOptions {
     std::string names;
     for (const estimator::EffectDescription& d : estimator::effect_catalogue())
       names += (names.empty() ? "" : "|") + std::string(d.name);
-    add_place("kind", choice, "What is hidden; docs/effects.md has the equations.");
+    add_place("kind", choice, "Kind of effect.");
     all_.back().required = true;
     all_.back().choices = keep(names);
-    add_place("story", integer, "Of the frame story, panel, node or floor.");
+    add_place("story", integer, "Story of the frame story, panel, node or floor.");
     all_.back().min = 1;
     all_.back().max = 1000;
-    add_place("frame", text, "Name of the frame it is on.");
-    add_place("panel", text, "Floor panel: names of the frames where its spans start, \"x1y1\".");
-    add_place("node", text, "Crossing of a y-parallel and an x-parallel frame, \"x1y1\".");
-    add_place("to_story", integer, "Lower floor of two that are joined; 0 is the base.");
+    add_place("frame", text, "Name of the frame.");
+    add_place("panel", text,
+              "Floor panel, named after the frames where its spans start: \"x1y1\".");
+    add_place("node", text, "Crossing of a y-parallel and an x-parallel frame: \"x1y1\".");
+    add_place("to_story", integer, "Lower floor of two; 0 is the base.");
     all_.back().default_value = "0";
     all_.back().min = 0;
     all_.back().max = 1000;
-    add_place("direction", choice, "Of what concerns the whole building.");
+    add_place("direction", choice, "Direction, for effects of the whole building.");
     all_.back().choices = "x|y";
-    add_place("mode", integer, "Of the building, in the order of the natural frequencies.");
+    add_place("mode", integer, "Mode, in the order of natural frequencies.");
     all_.back().min = 1;
     all_.back().max = 100000;
     add_place("channel", text, "Name of the channel.");
@@ -63,11 +64,7 @@ class EffectOptions {
     const auto known =
         std::find_if(all_.begin(), all_.end(), [&](const Option& o) { return o.key == p.key; });
     if (known != all_.end()) return;
-    std::string of;
-    for (const estimator::EffectDescription& d : estimator::effect_catalogue())
-      for (const estimator::EffectParameter& other : d.parameters)
-        if (other.key == p.key) of += (of.empty() ? "Of " : ", ") + std::string(d.name);
-    add_place(p.key, number, keep(of + "."));
+    add_place(p.key, number, "Parameter of the kind; see [effects](effects.md).");
     all_.back().unit = p.unit;
   }
 

@@ -13,8 +13,7 @@ const Option kOptions[] = {
      .key = "directory",
      .type = text,
      .required = true,
-     .meaning = "Where a page and a JSON file are written after every strong motion; beside this "
-                "file unless the path says otherwise. It is made when it is not there.",
+     .meaning = "Directory, relative to this file; created if missing. Reports are written here.",
      .reload = restart,
      .is_path = true,
      .target = into<&EventReportSettings::directory>},
@@ -24,7 +23,7 @@ const Option kOptions[] = {
      .default_value = "0.1",
      .min = 1e-4,
      .max = 50,
-     .meaning = "The base moves strongly above this distance from its mean, ...",
+     .meaning = "Strong motion begins when the base is this far from its mean.",
      .reload = restart,
      .target = into<&EventReportSettings::options, &estimator::ShakingOptions::trigger_mps2>},
     {.section = "event_report",
@@ -33,8 +32,7 @@ const Option kOptions[] = {
      .default_value = "20",
      .min = 2,
      .max = 45,
-     .meaning =
-         "... and strong motion has ended when it has not for so long; then the report is written.",
+     .meaning = "Strong motion ends after this time below the trigger.",
      .reload = restart,
      .target = into<&EventReportSettings::options, &estimator::ShakingOptions::quiet_s>},
     {.section = "event_report",
@@ -42,7 +40,7 @@ const Option kOptions[] = {
      .default_value = "0.005",
      .min = 0,
      .max = 1,
-     .meaning = "Peak drift of a story over its height from which on the report is yellow, ...",
+     .meaning = "Peak drift over story height that makes the report yellow.",
      .reload = restart,
      .target = into<&EventReportSettings::yellow_drift_ratio>},
     {.section = "event_report",
@@ -50,7 +48,7 @@ const Option kOptions[] = {
      .default_value = "0.015",
      .min = 0,
      .max = 1,
-     .meaning = "... and red.",
+     .meaning = "Peak drift over story height that makes the report red.",
      .reload = restart,
      .target = into<&EventReportSettings::red_drift_ratio>},
     {.section = "event_report",
@@ -58,8 +56,8 @@ const Option kOptions[] = {
      .default_value = "0.05",
      .min = 0,
      .max = 1,
-     .meaning = "Lasting loss of a stiffness, beyond three standard errors, from which on the "
-                "report is yellow, ...",
+     .meaning =
+         "Lasting stiffness loss, beyond three standard errors, that makes the report yellow.",
      .reload = restart,
      .target = into<&EventReportSettings::yellow_loss_ratio>},
     {.section = "event_report",
@@ -67,7 +65,7 @@ const Option kOptions[] = {
      .default_value = "0.2",
      .min = 0,
      .max = 1,
-     .meaning = "... and red.",
+     .meaning = "Lasting stiffness loss that makes the report red.",
      .reload = restart,
      .target = into<&EventReportSettings::red_loss_ratio>},
     {.section = "event_report",
@@ -76,7 +74,7 @@ const Option kOptions[] = {
      .default_value = "500",
      .min = 1,
      .max = 100000,
-     .meaning = "So many reports are kept: the oldest are removed.",
+     .meaning = "Number of reports to keep; the oldest are removed.",
      .reload = restart,
      .target = into<&EventReportSettings::most_reports>},
 };
@@ -116,18 +114,17 @@ const Option kFragility[] = {
      .choices = "W1|W2|S1|S1L|S1M|S1H|S2|S2L|S2M|S2H|S3|S4|S4L|S4M|S4H|S5|S5L|S5M|S5H|C1|C1L|C1M|"
                 "C1H|C2|C2L|C2M|C2H|C3|C3L|C3M|C3H|PC1|PC2|PC2L|PC2M|PC2H|RM1|RM1L|RM1M|RM2|RM2L|"
                 "RM2M|RM2H|URM|URML|URMM",
-     .meaning = "HAZUS' model building type, whose drift limits are the medians: W wood, S steel "
-                "(1 moment frame, 2 braced, 4 with concrete walls, 5 with infill), C concrete "
-                "(1 moment frame, 2 walls, 3 infill), PC precast, RM and URM reinforced and "
-                "unreinforced masonry. L, M, H ask for the limits of low-, mid- or high-rise.",
+     .meaning = "HAZUS building type: W wood, S steel (1 moment frame, 2 braced, 4 concrete walls, "
+                "5 infill), C concrete (1 moment frame, 2 walls, 3 infill), PC precast, RM and URM "
+                "reinforced and unreinforced masonry. L, M, H: low-, mid-, high-rise limits.",
      .reload = restart,
      .by_hand = "a text that is looked up in a table"},
     {.section = "fragility",
      .key = "design_level",
      .type = choice,
      .choices = "high|moderate|low|pre",
-     .meaning = "The seismic code the building was designed by; needed with type. pre: before "
-                "there was one. S5, C3 and URM have limits of low and pre only.",
+     .meaning = "Seismic code of the design; required with type. pre: before codes. S5, C3 and URM "
+                "have only low and pre.",
      .reload = restart,
      .target = into<&FragilitySettings::design_level>},
     {.section = "fragility",
@@ -135,32 +132,37 @@ const Option kFragility[] = {
      .type = choice,
      .default_value = "\"story\"",
      .choices = "story|height",
-     .meaning =
-         "story: a type without L, M, H has HAZUS' low-rise limits, which are those of a "
-         "single story's drift, as it is measured here. height: the limits go by the "
-         "number of stories; those of mid-rise (times 2/3) and high-rise (times 1/2) are for "
-         "the average drift of a building and call damage earlier.",
+     .meaning = "story: types without L, M, H use low-rise limits, which apply to a single story. "
+                "height: limits follow the number of stories and judge damage earlier.",
      .reload = restart,
      .target = into<&FragilitySettings::drift_limits>},
     median("slight_drift_ratio",
-           "Median drift over story height at which slight structural damage begins; in place of "
-           "the type's."),
-    median("moderate_drift_ratio", "Likewise moderate damage."),
-    median("extensive_drift_ratio", "Likewise extensive damage."),
-    median("complete_drift_ratio", "Likewise complete damage."),
-    dispersion("slight_dispersion",
-               "Standard deviation of the logarithm of that drift for slight damage; HAZUS' "
-               "uncertainty of the limit itself, without that of the shaking, which is measured."),
-    dispersion("moderate_dispersion", "Likewise moderate damage."),
-    dispersion("extensive_dispersion", "Likewise extensive damage."),
-    dispersion("complete_dispersion", "Likewise complete damage."),
+           "Median story drift ratio at which this damage begins. Default: by type."),
+    median("moderate_drift_ratio",
+           "Median story drift ratio at which this damage begins. Default: by type."),
+    median("extensive_drift_ratio",
+           "Median story drift ratio at which this damage begins. Default: by type."),
+    median("complete_drift_ratio",
+           "Median story drift ratio at which this damage begins. Default: by type."),
+    dispersion(
+        "slight_dispersion",
+        "Standard deviation of that drift's logarithm, without the uncertainty of the shaking."),
+    dispersion(
+        "moderate_dispersion",
+        "Standard deviation of that drift's logarithm, without the uncertainty of the shaking."),
+    dispersion(
+        "extensive_dispersion",
+        "Standard deviation of that drift's logarithm, without the uncertainty of the shaking."),
+    dispersion(
+        "complete_dispersion",
+        "Standard deviation of that drift's logarithm, without the uncertainty of the shaking."),
     {.section = "fragility",
      .key = "restricted_probability",
      .default_value = "0.25",
      .min = 0.01,
      .max = 0.99,
-     .meaning = "Probability of moderate or worse damage in any story from which on the placard "
-                "says restricted use.",
+     .meaning =
+         "Probability of at least moderate damage in a story for the placard restricted use.",
      .reload = restart,
      .target = into<&FragilitySettings::rules, &estimator::PlacardRules::restricted>},
     {.section = "fragility",
@@ -168,8 +170,7 @@ const Option kFragility[] = {
      .default_value = "0.25",
      .min = 0.01,
      .max = 0.99,
-     .meaning = "Probability of extensive or worse damage in any story from which on it says "
-                "unsafe.",
+     .meaning = "Probability of at least extensive damage in a story for the placard unsafe.",
      .reload = restart,
      .target = into<&FragilitySettings::rules, &estimator::PlacardRules::unsafe>},
 };

@@ -27,56 +27,57 @@ std::vector<Option> make() {
        .key = "reason",
        .type = text,
        .required = true,
-       .meaning = "Why these numbers are right, for whoever has to change them; not empty."},
+       .meaning = "Why these numbers are right; not empty."},
       {.section = "expect.parameter",
        .key = "name",
        .type = text,
-       .meaning = "The parameter; this or `group`."},
+       .meaning = "Parameter name; this or `group`."},
       {.section = "expect.parameter",
        .key = "group",
        .type = choice,
        .choices = kGroups,
-       .meaning = "Every parameter of a group."},
-      any_number("median", "Of the observable windows, in the parameter's unit."),
-      any_number("q1", "Lower quartile, likewise."),
-      any_number("q3", "Upper quartile, likewise."),
-      any_number("value", "Of every observable window, likewise."),
+       .meaning = "All parameters of a group."},
+      any_number("median", "Median of the observable windows."),
+      any_number("q1", "Lower quartile."),
+      any_number("q3", "Upper quartile."),
+      any_number("value", "Value of every observable window."),
       at_least_0("expect.parameter", "tolerance", number, "",
-                 "How far these may be off, in the parameter's unit."),
-      at_least_0("expect.parameter", "tolerance_ratio", number, "", "The same as a share of them."),
-      at_least_0(
-          "expect.parameter", "tolerance_std_errors", number, "",
-          "The same in standard errors as published: a window's own for `value`, the median one "
-          "for the others."),
-      ratio("observable_ratio", "Share of the windows that have a value."),
+                 "Tolerance of these, in the parameter's unit."),
+      at_least_0("expect.parameter", "tolerance_ratio", number, "",
+                 "Tolerance relative to the expected value."),
+      at_least_0("expect.parameter", "tolerance_std_errors", number, "",
+                 "Tolerance in published standard errors: a window's own for `value`, otherwise "
+                 "the median one."),
+      ratio("observable_ratio", "Share of windows with a value."),
       {.section = "expect.parameter",
        .key = "observable_tolerance",
        .default_value = "0",
        .min = 0,
        .max = 1,
-       .meaning = "How far that may be off."},
-      ratio("observable_min_ratio", "Least share of the windows that have a value."),
-      ratio("observable_max_ratio", "Largest share, 0: it must never have one."),
+       .meaning = "Tolerance of that share."},
+      ratio("observable_min_ratio", "Smallest share of windows with a value."),
+      ratio("observable_max_ratio", "Largest share of windows with a value."),
   };
   for (const std::string_view section : {"expect.parameter", "expect.event"}) {
     all.push_back(at_least_0(section, "from_s", number, "s",
-                             "Only from here on, after the first sample; of windows their end."));
-    all.push_back(at_least_0(section, "to_s", number, "s", "Only up to here."));
+                             "Start after the first sample; windows count by their end."));
+    all.push_back(at_least_0(section, "to_s", number, "s", "End of the range."));
   }
   for (const std::string_view name : {"windows", "gaps", "lost", "late", "repaired", "rejected",
                                       "stuck", "clipped", "malformed", "foreign"})
-    all.push_back(at_least_0("expect.counts", name, integer, "", "As in the summary, exactly."));
+    all.push_back(
+        at_least_0("expect.counts", name, integer, "", "Exactly the number in the summary."));
   all.push_back(
-      at_least_0("expect.counts", "windows_min", integer, "", "At least so many windows."));
+      at_least_0("expect.counts", "windows_min", integer, "", "Least number of windows."));
   all.push_back({.section = "expect.event",
                  .key = "kind",
                  .type = text,
-                 .meaning = "Of the event_t messages that are raised; without it any."});
+                 .meaning = "Kind of event. Default: any."});
   all.push_back({.section = "expect.event",
                  .key = "place",
                  .type = text,
-                 .meaning = "Parameter or channel; without it any."});
-  Option count = at_least_0("expect.event", "count", integer, "", "How many of them.");
+                 .meaning = "Parameter or channel. Default: any."});
+  Option count = at_least_0("expect.event", "count", integer, "", "Number of events.");
   count.default_value = "1";
   all.push_back(count);
   return all;

@@ -12,11 +12,8 @@ const Option kOptions[] = {
     {.section = "gap",
      .key = "model",
      .type = text,
-     .meaning =
-         "File of the model to simulate, beside this one unless its path says otherwise: what "
-         "`framewatch diagnose` calls model.toml and `framewatch adopt` puts there, even "
-         "while `framewatch run` is running. While it does not exist the model is learned: "
-         "what the windows identify, without effects.",
+     .meaning = "Model file, relative to this file, from `framewatch diagnose` (model.toml) or "
+                "`framewatch adopt`. Default: learn a model without effects from the windows.",
      .reload = settings,
      .is_path = true,
      .target = into<&GapSettings::model_path>},
@@ -27,7 +24,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e6,
      .above_min = true,
-     .meaning = "Sum of the windows with values that a model is learned from.",
+     .meaning = "Total window time to learn a model.",
      .reload = settings,
      .target = into<&GapSettings::options, &estimator::GapOptions::learn_s>},
     {.section = "gap",
@@ -37,7 +34,7 @@ const Option kOptions[] = {
      .default_value = "10",
      .min = 1,
      .max = 3600,
-     .meaning = "Simulation and measurement are compared over this time, once a second.",
+     .meaning = "Comparison window; evaluated every second.",
      .reload = settings,
      .target = into<&GapSettings::options, &estimator::GapOptions::window_s>},
     {.section = "gap",
@@ -46,8 +43,8 @@ const Option kOptions[] = {
      .min = 0,
      .max = 10,
      .above_min = true,
-     .meaning = "Difference beyond noise over measured motion, root mean square, from which on a "
-                "gap is one; it is over at half of it.",
+     .meaning =
+         "Raise a gap at this rms difference beyond noise over rms motion; clear at half of it.",
      .reload = settings,
      .target = into<&GapSettings::options, &estimator::GapOptions::raise_ratio>},
     {.section = "gap",
@@ -56,15 +53,14 @@ const Option kOptions[] = {
      .default_value = "10",
      .min = 1,
      .max = 86400,
-     .meaning = "So long a gap lasts before it is an event, and is over before it is cleared.",
+     .meaning = "Least duration of a gap before the event, and of its absence before clearing.",
      .reload = settings,
      .target = into<&GapSettings::options, &estimator::GapOptions::lasting_s>},
     {.section = "gap",
      .key = "store",
      .type = text,
-     .meaning = "Directory for the samples that show a gap, one LCM event log per event, for "
-                "`framewatch diagnose --event`; beside this file unless the path says otherwise. "
-                "Without it none are stored.",
+     .meaning = "Directory for samples of each gap, relative to this file, for `framewatch "
+                "diagnose --event`. Default: not stored.",
      .reload = settings,
      .is_path = true,
      .target = into<&GapSettings::store>},
@@ -74,7 +70,7 @@ const Option kOptions[] = {
      .default_value = "30",
      .min = 0,
      .max = 600,
-     .meaning = "Samples from so long before a gap is raised are stored, ...",
+     .meaning = "Stored time before the gap.",
      .reload = settings,
      .target = into<&GapSettings::before_s>},
     {.section = "gap",
@@ -83,7 +79,7 @@ const Option kOptions[] = {
      .default_value = "60",
      .min = 0,
      .max = 600,
-     .meaning = "... and until so long after it. They are kept in memory until then.",
+     .meaning = "Stored time after the gap.",
      .reload = settings,
      .target = into<&GapSettings::after_s>},
 };

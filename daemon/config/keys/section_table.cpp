@@ -5,83 +5,73 @@ namespace {
 
 const SectionDescription kSections[] = {
     {"structure", "[structure]",
-     "The building. Frames at a floor are numbered x-parallel first, in order of y, then "
-     "y-parallel, in order of x. A number stands for a list of equal values.",
+     "The building. Frames are numbered x-parallel first (by y), then y-parallel (by x). One "
+     "number stands for a list of equal values.",
      Reach::restart},
     {"structure.design", "[structure.design]",
-     "Optional: what the drawings say, never taken for truth. It tunes the filters before the "
-     "first estimates and is what the prior is about.",
+     "Optional values from the drawings. They tune the filters before the first estimates and "
+     "define the prior.",
      Reach::restart},
     {"channel", "[[channel]]",
-     "One accelerometer axis each. Every frame has one on every floor, and the base one in every "
-     "direction that has frames. The corrected value is polarity * (scale * raw - offset).",
+     "One accelerometer axis. Each frame needs one on every floor, and the base needs one per "
+     "direction with frames. The corrected value is polarity * (scale * raw - offset).",
      Reach::restart},
-    {"channel.source", "source = { lcm ... }", "Samples that come over LCM.", Reach::restart},
-    {"channel.source.can", "source = { can ... }",
-     "Samples that come over CAN ([how to commission a bus](can.md)).", Reach::restart},
-    {"estimator", "[estimator]", "How the windows are estimated and when a value is published.",
+    {"channel.source", "source = { lcm ... }", "Samples from LCM.", Reach::restart},
+    {"channel.source.can", "source = { can ... }", "Samples from CAN ([setup](can.md)).",
      Reach::restart},
-    {"lcm", "[lcm]", "The bus the samples come from and the estimates go to.", Reach::restart},
+    {"estimator", "[estimator]", "How windows are estimated and published.", Reach::restart},
+    {"lcm", "[lcm]", "The LCM bus for samples and estimates.", Reach::restart},
     {"commands", "[commands]",
-     "How a running daemon is told what to do ([who may](operate.md#who-may-give-commands)).",
+     "Where a daemon takes commands ([permissions](operate.md#who-may-give-commands)).",
      Reach::restart},
-    {"can", "[[can]]", "One CAN bus each, and what it carries.", Reach::restart},
-    {"can_node", "[[can_node]]",
-     "One sender of samples on a CAN bus each, and how its samples get their time.",
+    {"can", "[[can]]", "One CAN bus.", Reach::restart},
+    {"can_node", "[[can_node]]", "One sender of samples on a CAN bus, and its timing.",
      Reach::restart},
-    {"watch", "[watch]",
-     "Optional: stiffness is watched for lasting changes, and event_t messages say which element, "
-     "how much, how sure and since when.",
+    {"watch", "[watch]", "Optional: detect lasting stiffness changes and publish them as events.",
      Reach::settings},
     {"gap", "[gap]",
-     "Optional: the building is simulated beside its measurement, and what differs is told "
-     "([the gap](gap.md)).",
+     "Optional: simulate the building and compare with its measurement ([the gap](gap.md)).",
      Reach::settings},
     {"history", "[history]",
      "Optional: `framewatch run` keeps raw samples, summaries and events on disk "
      "([history](history.md)).",
      Reach::restart},
     {"event_report", "[event_report]",
-     "Optional: after every strong motion a page and a JSON file say what the building went "
-     "through "
-     "([after an earthquake](operate.md#after-an-earthquake)).",
+     "Optional: write a page and a JSON file after every strong motion ([after an "
+     "earthquake](operate.md#after-an-earthquake)).",
      Reach::restart},
     {"fragility", "[fragility]",
-     "Optional: at which drift stories are damaged, for the placard after strong motion "
-     "([what it says](operate.md#drift-damage-and-placard)). Without it drifts are told and damage "
-     "is not judged: no type is assumed.",
+     "Optional: drifts that damage stories, for the placard after strong motion "
+     "([how](operate.md#drift-damage-and-placard)). Without this section, damage is not judged.",
      Reach::restart},
     {"actions", "[actions]",
-     "Optional: `framewatch run` tells people of events, by a command and a webhook "
-     "([telling people](actions.md)).",
+     "Optional: `framewatch run` notifies people of events by a command and a webhook "
+     "([actions](actions.md)).",
      Reach::settings},
     {"fleet", "[fleet]",
-     "Optional, and only for `framewatch uplink`, which sends what the history holds to the hub of "
-     "many buildings ([many buildings](fleet.md)). `framewatch run` does not look at it; the "
-     "uplink "
-     "reads it when it starts. It takes a [history].",
+     "Optional: `framewatch uplink` sends the history to a hub of many buildings "
+     "([fleet](fleet.md)). Needs [history]; `framewatch run` ignores this section.",
      Reach::settings},
     {"scenario", "Scenario files: at the top",
-     "`framewatch simulate` reads a scenario: the building as above or `config`, and what happens "
-     "to it."},
-    {"truth", "[truth]", "What the virtual building is, which the estimator does not know."},
-    {"motion", "[motion]", "What the ground does."},
-    {"sensors", "[sensors]", "What every virtual accelerometer is like."},
-    {"sensor", "[[sensor]]", "One that is different."},
-    {"change", "[[change]]", "Something in the building that changes while it is shaken."},
+     "Input of `framewatch simulate`: the building and what happens to it."},
+    {"truth", "[truth]",
+     "The true values of the simulated building, unknown to the estimator. Defaults come from the "
+     "design."},
+    {"motion", "[motion]", "The ground motion."},
+    {"sensors", "[sensors]", "Errors of every simulated accelerometer."},
+    {"sensor", "[[sensor]]", "Different errors of one channel. All keys of [sensors] apply."},
+    {"change", "[[change]]", "A parameter change during the simulation."},
     {"effect", "[[effect]]",
-     "What the linear building leaves out, in a scenario or a configuration, once for each: kind, "
-     "place and numbers; [effects](effects.md) has the equations, and which keys belong to which "
-     "kind.",
+     "An effect beyond the linear building, in a scenario or a configuration. "
+     "[Effects](effects.md) lists equations and the keys of each kind.",
      Reach::restart},
     {"expect", "Expectation files: at the top",
-     "`framewatch replay --expect` holds a replay to such a file, `--write-expect` makes a first "
-     "one "
-     "([replay in CI](replay-in-ci.md))."},
-    {"expect.counts", "[counts]", "What became of the input."},
-    {"expect.parameter", "[[parameter]]", "What the windows of a parameter, or of a group, say."},
-    {"expect.event", "[[event]]", "Alarms, by the time since when they hold."},
-    {"baseline.parameter", "Baseline files: [[parameter]]", "Reference parameters of [watch]."},
+     "Input of `framewatch replay --expect`; `--write-expect` creates one ([replay in "
+     "CI](replay-in-ci.md))."},
+    {"expect.counts", "[counts]", "Expected counts."},
+    {"expect.parameter", "[[parameter]]", "Expected values of a parameter or group."},
+    {"expect.event", "[[event]]", "Expected events."},
+    {"baseline.parameter", "Baseline files: [[parameter]]", "Reference values of [watch]."},
 };
 
 }  // namespace

@@ -8,14 +8,14 @@ using enum OptionType;
 using enum Reach;
 
 constexpr std::string_view kSized = "its sizes follow from stories and frames";
-constexpr std::string_view kTheta = "goes to a place in theta that the structure decides";
+constexpr std::string_view kTheta = "its index in theta depends on the structure";
 
 const Option kOptions[] = {
     {.section = "structure",
      .key = "name",
      .type = text,
      .default_value = "\"building\"",
-     .meaning = "What people call the building.",
+     .meaning = "Name of the building.",
      .reload = restart,
      .target = into<&estimator::Structure::name>},
     {.section = "structure",
@@ -24,23 +24,23 @@ const Option kOptions[] = {
      .required = true,
      .min = 1,
      .max = 1000,
-     .meaning = "Number of stories; floor i lies on top of story i, 0 is the ground.",
+     .meaning = "Number of stories. Floor i is on top of story i; 0 is the ground.",
      .reload = restart,
      .target = into<&estimator::Structure::stories>},
     {.section = "structure",
      .key = "frames_x",
      .type = texts,
      .default_value = "[]",
-     .meaning = "Names of the vertical frames parallel to x, in order of y; none when the building "
-                "is a plane one along y.",
+     .meaning =
+         "Names of the frames parallel to x, in order of y. Empty for a plane building along y.",
      .reload = restart,
      .target = into<&estimator::Structure::frames_x>},
     {.section = "structure",
      .key = "frames_y",
      .type = texts,
      .default_value = "[]",
-     .meaning = "Names of the vertical frames parallel to y, in order of x; none when the building "
-                "is a plane one along x.",
+     .meaning =
+         "Names of the frames parallel to y, in order of x. Empty for a plane building along x.",
      .reload = restart,
      .target = into<&estimator::Structure::frames_y>},
     {.section = "structure",
@@ -52,7 +52,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1000,
      .above_min = true,
-     .meaning = "Distances between neighbouring y-parallel frames: one less than frames_y.",
+     .meaning = "Distances between y-parallel frames, one less than frames_y.",
      .reload = restart,
      .by_hand = kSized},
     {.section = "structure",
@@ -64,7 +64,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1000,
      .above_min = true,
-     .meaning = "Distances between neighbouring x-parallel frames: one less than frames_x.",
+     .meaning = "Distances between x-parallel frames, one less than frames_x.",
      .reload = restart,
      .by_hand = kSized},
     {.section = "structure",
@@ -84,7 +84,7 @@ const Option kOptions[] = {
      .type = choice,
      .default_value = "\"flexible\"",
      .choices = "flexible|rigid",
-     .meaning = "Whether floor panels shear in their plane or a floor moves as one body.",
+     .meaning = "Whether floor panels shear in their plane.",
      .reload = restart,
      .target = into<&estimator::Structure::floor>},
     {.section = "structure",
@@ -96,9 +96,8 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e9,
      .above_min = true,
-     .meaning =
-         "Mass at each crossing of frames: one row per x-parallel frame, in it one value per "
-         "y-parallel frame. In a plane building also [story][frame].",
+     .meaning = "Mass at each frame crossing, one row per x-parallel frame. Plane buildings: also "
+                "[story][frame].",
      .reload = restart,
      .by_hand = kSized},
 
@@ -108,8 +107,7 @@ const Option kOptions[] = {
      .unit = "deg",
      .min = -360,
      .max = 360,
-     .meaning = "Where the building's +y axis points by the compass, clockwise from north; for "
-                "channels that give their azimuth.",
+     .meaning = "Compass direction of the building's +y axis, clockwise from north.",
      .reload = restart,
      .by_hand = "goes into the channels' places"},
 
@@ -120,10 +118,8 @@ const Option kOptions[] = {
      .default_value = "[]",
      .min = 1,
      .max = 1000,
-     .meaning =
-         "Of a building with channels on some floors: the measured floors at which groups of "
-         "stories end, upward. Default: all of them. Fewer where single stories between "
-         "measured floors come out too uncertain.",
+     .meaning = "Measured floors at which groups of stories end, upward, if some floors have no "
+                "channels. Default: all measured floors.",
      .reload = restart,
      .by_hand = kSized},
     {.section = "structure",
@@ -132,8 +128,7 @@ const Option kOptions[] = {
      .default_value = "0.02",
      .min = 0,
      .max = 0.5,
-     .meaning = "How far a floor's mass may be off, one standard deviation: counts in the error of "
-                "absolute values.",
+     .meaning = "Standard deviation of a floor's mass. Adds to the error of absolute values.",
      .reload = restart,
      .by_hand = kSized},
     {.section = "structure",
@@ -142,9 +137,8 @@ const Option kOptions[] = {
      .default_value = "0.05",
      .min = 0,
      .max = 0.5,
-     .meaning =
-         "How far the design's stiffness of a story may be off from that of the others of its "
-         "group, one standard deviation: counts in the error of absolute values.",
+     .meaning = "Standard deviation of a story's design stiffness relative to its group. Adds to "
+                "the error of absolute values.",
      .reload = restart,
      .by_hand = kSized},
 
@@ -156,7 +150,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e13,
      .above_min = true,
-     .meaning = "Design stiffness of the x-parallel frames; needed when there are any.",
+     .meaning = "Stiffness of the x-parallel frames; required if there are any.",
      .reload = restart,
      .by_hand = kTheta},
     {.section = "structure.design",
@@ -167,7 +161,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e13,
      .above_min = true,
-     .meaning = "Design stiffness of the y-parallel frames; needed when there are any.",
+     .meaning = "Stiffness of the y-parallel frames; required if there are any.",
      .reload = restart,
      .by_hand = kTheta},
     {.section = "structure.design",
@@ -178,9 +172,8 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e13,
      .above_min = true,
-     .meaning = "Design shear stiffness of the floor panels; without it every panel of a floor "
-                "starts as stiff as the mean frame of the story below it. Unused when the floors "
-                "are rigid.",
+     .meaning = "Shear stiffness of the floor panels. Default: mean frame stiffness of the story "
+                "below. Unused with rigid floors.",
      .reload = restart,
      .by_hand = kTheta},
     {.section = "structure.design",
@@ -190,8 +183,8 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1,
      .above_min = true,
-     .meaning = "Damping ratio of the first mode; design damping is proportional to stiffness, "
-                "but for what the next keys say.",
+     .meaning = "Damping ratio of the first mode. Damping is proportional to stiffness unless "
+                "given below.",
      .reload = restart,
      .by_hand = kTheta},
     {.section = "structure.design",
@@ -202,7 +195,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e13,
      .above_min = true,
-     .meaning = "Design damping of the x-parallel frames.",
+     .meaning = "Damping of the x-parallel frames.",
      .reload = restart,
      .by_hand = kTheta},
     {.section = "structure.design",
@@ -213,7 +206,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e13,
      .above_min = true,
-     .meaning = "Design damping of the y-parallel frames.",
+     .meaning = "Damping of the y-parallel frames.",
      .reload = restart,
      .by_hand = kTheta},
     {.section = "structure.design",
@@ -224,7 +217,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e13,
      .above_min = true,
-     .meaning = "Design damping of the floor panels. Unused when the floors are rigid.",
+     .meaning = "Damping of the floor panels. Unused with rigid floors.",
      .reload = restart,
      .by_hand = kTheta},
     {.section = "structure.design",
@@ -235,10 +228,9 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e16,
      .above_min = true,
-     .meaning = "Rotational stiffness of every x-parallel frame at every floor, by which it bends "
-                "(effect frame_bending); without it these frames do not bend. Identified where "
-                "channels are on some floors only: the base's, the shape over the floors is "
-                "believed.",
+     .meaning =
+         "Rotational stiffness of x-parallel frames at each floor (effect frame_bending). Default: "
+         "no bending. If only some floors have channels, the base's value is identified.",
      .reload = restart,
      .by_hand = kTheta},
     {.section = "structure.design",
@@ -249,7 +241,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e16,
      .above_min = true,
-     .meaning = "Likewise of the y-parallel frames.",
+     .meaning = "The same for y-parallel frames.",
      .reload = restart,
      .by_hand = kTheta},
 };

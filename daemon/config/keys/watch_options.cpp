@@ -12,11 +12,8 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "baseline",
      .type = text,
-     .meaning =
-         "File of reference parameters, beside this one unless its path says otherwise. "
-         "Parameters that it lacks, all when it does not exist, `framewatch run` learns and "
-         "adds to it; `framewatch replay --write-baseline` makes one from records. Without a "
-         "file every run learns its own.",
+     .meaning = "Baseline file, relative to this file. `framewatch run` adds missing parameters; "
+                "`framewatch replay --write-baseline` makes one. Default: each run learns its own.",
      .reload = settings,
      .is_path = true,
      .target = into<&WatchSettings::baseline_path>},
@@ -27,9 +24,8 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e6,
      .above_min = true,
-     .meaning =
-         "Sum of the windows that every parameter's baseline is learned from at least; it is "
-         "learned on until its standard error is a tenth of the smallest change.",
+     .meaning = "Least total window time to learn a baseline. Learning continues until the "
+                "standard error is a tenth of the smallest change.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::learn_s>},
     {.section = "watch",
@@ -37,9 +33,8 @@ const Option kOptions[] = {
      .default_value = "0.03",
      .min = 0,
      .max = 1,
-     .meaning =
-         "Smallest lasting change of a frame's stiffness that matters, half as much of a group of "
-         "stories; 0: not watched.",
+     .meaning = "Smallest relevant change of a frame's stiffness (half for a group of stories). 0: "
+                "not watched.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::least_change_k>},
     {.section = "watch",
@@ -47,7 +42,7 @@ const Option kOptions[] = {
      .default_value = "0.2",
      .min = 0,
      .max = 1,
-     .meaning = "The same of a floor panel's.",
+     .meaning = "The same for floor panels.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::least_change_g>},
     {.section = "watch",
@@ -56,7 +51,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e6,
      .above_min = true,
-     .meaning = "False alarms that are put up with, of the whole building.",
+     .meaning = "Accepted false alarms for the whole building.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::alarms_per_year>},
     {.section = "watch",
@@ -66,7 +61,7 @@ const Option kOptions[] = {
      .min = 0,
      .max = 8766,
      .above_min = true,
-     .meaning = "Time a year in which the building moves enough for windows to have values.",
+     .meaning = "Yearly time with enough motion for values.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::shaking_hours_per_year>},
     {.section = "watch",
@@ -75,8 +70,7 @@ const Option kOptions[] = {
      .default_value = "3600",
      .min = 0,
      .max = 86400,
-     .meaning = "Length of the long windows that weak motion is accumulated in and watched, with "
-                "a baseline of their own; 0: none. The sensors' noise has to be configured.",
+     .meaning = "Length of the long windows for weak motion. 0: off. Needs the sensors' noise.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::quiet_window_s>},
     {.section = "watch",
@@ -86,43 +80,41 @@ const Option kOptions[] = {
      .min = 0,
      .max = 8766,
      .above_min = true,
-     .meaning = "Sum of the long windows that their baseline is learned from, and how it follows "
-                "temperature and amplitude.",
+     .meaning = "Total of long windows to learn their baseline.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::quiet_learn_hours>},
     {.section = "watch",
      .key = "temperature_channel",
      .type = text,
-     .meaning = "LCM channel of temperature_t messages: stiffness may follow the temperature, and "
-                "is watched for what that does not explain.",
+     .meaning = "LCM channel of temperature_t messages. Stiffness may follow the temperature; "
+                "other changes are watched.",
      .reload = restart,
      .target = into<&WatchSettings::temperature_channel>},
     {.section = "watch",
      .key = "follow_amplitude",
      .type = boolean,
      .default_value = "true",
-     .meaning = "Stiffness may follow the amplitude of the element's own motion, and recovers some "
-                "time after a strong one; it is watched for what that does not explain, where the "
-                "baseline spans amplitudes 3 times apart or more.",
+     .meaning = "Stiffness may follow the amplitude of the element's motion, once the baseline "
+                "spans a factor of 3.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::amplitude>},
     {.section = "baseline.parameter",
      .key = "name",
      .type = text,
      .required = true,
-     .meaning = "The parameter."},
+     .meaning = "Parameter name."},
     {.section = "baseline.parameter",
      .key = "value",
      .required = true,
      .min = 0,
      .above_min = true,
-     .meaning = "Its reference value, in `unit`."},
+     .meaning = "Reference value, in `unit`."},
     {.section = "baseline.parameter",
      .key = "std_error",
      .required = true,
      .min = 0,
      .above_min = true,
-     .meaning = "How well that is known, likewise."},
+     .meaning = "Its standard error, in `unit`."},
     {.section = "baseline.parameter",
      .key = "unit",
      .type = text,
@@ -133,8 +125,8 @@ const Option kOptions[] = {
      .unit = "degC",
      .min = -90,
      .max = 150,
-     .meaning = "Mean temperature at which it was learned: with `temperature_channel` the value is "
-                "corrected for the temperature since."},
+     .meaning = "Mean temperature while learning. With `temperature_channel`, the value is "
+                "corrected for the temperature."},
     {.section = "baseline.parameter",
      .key = "amplitude_m",
      .type = grid,
@@ -142,22 +134,22 @@ const Option kOptions[] = {
      .shape = "[point]",
      .min = 0,
      .above_min = true,
-     .meaning = "Amplitudes of the element it was learned at, ascending: rms deformation of a "
-                "window. With `follow_amplitude` the value is corrected for them."},
+     .meaning = "Amplitudes while learning (rms deformation per window), ascending. With "
+                "`follow_amplitude`, the value is corrected for them."},
     {.section = "baseline.parameter",
      .key = "value_at_amplitude",
      .type = grid,
      .shape = "[point]",
      .min = 0,
      .above_min = true,
-     .meaning = "Its values there, in `unit`."},
+     .meaning = "Values at these amplitudes, in `unit`."},
     {.section = "baseline.parameter",
      .key = "std_error_at_amplitude",
      .type = grid,
      .shape = "[point]",
      .min = 0,
      .above_min = true,
-     .meaning = "How well those are known, likewise."},
+     .meaning = "Their standard errors, in `unit`."},
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "estimator/motion/sample_bound.h"
+#include "estimator/motion/acquisition.h"
 
 namespace framewatch::daemon {
 

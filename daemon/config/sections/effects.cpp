@@ -9,7 +9,7 @@
 
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"
-#include "estimator/structure/place_names.h"
+#include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "daemon/monitor/estimates/estimate_table.h"
 #include "estimator/identify/estimate/estimate.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {

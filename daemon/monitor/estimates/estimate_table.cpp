@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "estimator/numeric/nan.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {

@@ -12,7 +12,7 @@
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/numeric/nan.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 
 namespace framewatch::daemon {
 namespace {

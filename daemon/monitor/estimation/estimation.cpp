@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kMaxFindings = 50;
 constexpr double kMost_degc = 200;  // either way: no thermometer on a building says more
 
+EstimationListener no_listener;  // it does nothing
+
 void subtract(const estimator::AxisCounters& before, estimator::AxisCounters& from) {
   from.received -= before.received, from.missing -= before.missing, from.late -= before.late;
   from.repaired -= before.repaired, from.stuck -= before.stuck, from.clipped -= before.clipped;
@@ -24,24 +26,12 @@ void subtract(const estimator::AxisCounters& before, estimator::AxisCounters& fr
 
 }  // namespace
 
-Estimation::Estimation(const Config& config, MessageSink sink, Observer observer)
+Estimation::Estimation(const Config& config, MessageSink sink, EstimationListener* listener)
     : config_(config),
-      observer_(std::move(observer)),
+      listener_(listener != nullptr ? listener : &no_listener),
       publisher_(config, std::move(sink)),
       foreseen_(with_design_error(config.pipeline)),
-      pipeline_(
-          foreseen_, [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
-          [this](const estimator::WindowEstimate& estimate) {
-            publisher_.other(estimate);
-            watch(estimate);
-          },
-          [this](const estimator::SampleSet& instant) {
-            if (watch_) strong_.push(instant);
-            look_for_gap(instant);
-            look_for_shaking(instant);
-            if (taps_.instant) taps_.instant(instant);
-          },
-          [this](const estimator::ModelFit& fit) { publisher_.model(fit); }),
+      pipeline_(foreseen_),
       strong_(pipeline_.axes(), config.pipeline.options.rate_hz),
       intake_(
           wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
@@ -51,7 +41,6 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
       absurd_events_(config.pipeline.axes),
       channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s),
       newest_us_(config.pipeline.axes.size(), INT64_MIN) {
-  pipeline_.on_late([this](const estimator::WindowEstimate& estimate) { late_window(estimate); });
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   begin_watch();
@@ -96,7 +85,7 @@ void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
   add_records(report);
   for (std::size_t a = 0; a < report.axes.size(); ++a) subtract(counted_before_[a], report.axes[a]);
   announce(event_of(report, config_));
-  if (taps_.shaken) taps_.shaken(report);
+  listener_->on_shaken(report);
 }
 
 /// What [watch] and others found is what the report says.
@@ -113,8 +102,26 @@ void Estimation::add_records(EventReport& report) const {
   if (const auto* r = watch_->record(estimator::ChangeRecord::kEverything)) report.everything = *r;
 }
 
+void Estimation::take(estimator::Pipeline::Results&& results) {
+  for (const estimator::PipelineResult& result : results) {
+    if (result.instant != nullptr) {
+      if (watch_) strong_.push(*result.instant);
+      look_for_gap(*result.instant);
+      look_for_shaking(*result.instant);
+      listener_->on_instant(*result.instant);
+    }
+    if (result.estimate != nullptr) main_window(*result.estimate);
+    if (result.other != nullptr) {
+      publisher_.other(*result.other);
+      watch(*result.other);
+    }
+    if (result.model != nullptr) publisher_.model(*result.model);
+    if (result.late != nullptr) late_window(*result.late);
+  }
+}
+
 void Estimation::main_window(const estimator::WindowEstimate& estimate) {
-  if (observer_) observer_(estimate);
+  listener_->on_estimate(estimate);
   publisher_.estimate(estimate);
   ++windows_;
   watch(estimate);
@@ -137,7 +144,7 @@ void Estimation::look_for_gap(const estimator::SampleSet& instant) {
   const estimator::GapNews* news = gap_->news();
   if (news == nullptr) return;
   announce(gap_event(*news, config_));
-  if (taps_.gap) taps_.gap(*news);
+  listener_->on_gap(*news);
 }
 
 void Estimation::adopt(const estimator::GapModel& model) {
@@ -169,7 +176,7 @@ drivers::IntakeResult Estimation::temperature(const void* data, std::size_t size
   }
   if (watch_)
     watch_->temperature(estimator::from_microseconds(message->time_us), message->temperature_degc);
-  if (taps_.temperature) taps_.temperature(*message);
+  listener_->on_temperature(*message);
   return drivers::IntakeResult::table;
 }
 
@@ -186,7 +193,7 @@ void Estimation::announce(const event_t& event) {
   raised_.note(event);
   if (shaking_ && shaking_->active() && findings_.size() < kMaxFindings) findings_.push_back(event);
   publisher_.event(event);
-  if (taps_.event) taps_.event(event);
+  listener_->on_event(event);
 }
 
 void Estimation::withdraw(const std::string& kind) {
@@ -195,11 +202,11 @@ void Estimation::withdraw(const std::string& kind) {
 
 void Estimation::sample(const estimator::AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
-  if (taps_.sample) taps_.sample(sample);
+  listener_->on_sample(sample);
   channel_events_.sample(sample);
   if (const auto axis = static_cast<std::size_t>(sample.axis); axis < newest_us_.size())
     newest_us_[axis] = to_microseconds(sample.time);
-  pipeline_.push(sample);
+  take(pipeline_.push(sample));
 }
 
 void Estimation::came_up(bool raw) {
@@ -211,7 +218,7 @@ void Estimation::came_up(bool raw) {
 
 void Estimation::finish() {
   can_.finish();
-  pipeline_.finish();
+  take(pipeline_.finish());
   publish_state();
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,11 +13,11 @@
 #include "daemon/monitor/estimation/absurd_events.h"
 #include "daemon/monitor/estimation/can_events.h"
 #include "daemon/monitor/estimation/channel_events.h"
+#include "daemon/monitor/estimation/estimation_listener.h"
 #include "daemon/monitor/estimation/publisher.h"
 #include "daemon/monitor/estimation/sensor_seconds.h"
 #include "daemon/monitor/estimation/state_section.h"
 #include "daemon/monitor/estimation/wanted_axes.h"
-#include "daemon/monitor/event_report/event_report.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/lcm/accel_intake.h"
@@ -33,10 +32,8 @@ namespace framewatch::daemon {
 /// and publisher. Live and replayed samples take the same path. Uses no clock.
 class Estimation {
  public:
-  using Observer = std::function<void(const estimator::WindowEstimate&)>;
-
-  /// `config` must outlive this. `observer`, if any, sees every estimate before it is published.
-  Estimation(const Config& config, MessageSink sink, Observer observer = {});
+  /// `config` and `listener` must outlive this. sink: publishes messages; empty: they are not made.
+  Estimation(const Config& config, MessageSink sink, EstimationListener* listener = nullptr);
 
   /// See Pipeline; to be called before the first sample.
   void start_tuned(const estimator::Tuning& tuning) { pipeline_.start_tuned(tuning); }
@@ -55,17 +52,6 @@ class Estimation {
   void sample(const estimator::AccelSample& sample);
   /// The input has ended: closes open instants, publishes the last table and status.
   void finish();
-
-  /// Further receivers of inputs and results; any may be empty.
-  struct Taps {
-    std::function<void(const estimator::AccelSample&)> sample;
-    std::function<void(const temperature_t&)> temperature;
-    std::function<void(const estimator::GapNews&)> gap;
-    std::function<void(const event_t&)> event;            ///< after it was published
-    std::function<void(const EventReport&)> shaken = {};  ///< of a strong motion that has ended
-    std::function<void(const estimator::SampleSet&)> instant = {};  ///< calibrated
-  };
-  void tap(Taps taps) { taps_ = std::move(taps); }
 
   /// Goes out with the next status.
   void set_live(const LiveState& live) { live_ = live; }
@@ -113,6 +99,7 @@ class Estimation {
   void each_section(const Visit& visit);
   void publish_state();
   drivers::IntakeResult temperature(const void* data, std::size_t size);
+  void take(estimator::Pipeline::Results&& results);
   void main_window(const estimator::WindowEstimate& estimate);
   void late_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
@@ -132,8 +119,7 @@ class Estimation {
   void withdraw(const std::string& kind);
 
   const Config& config_;
-  Observer observer_;
-  Taps taps_;
+  EstimationListener* listener_;  ///< never null
   Publisher publisher_;
   RaisedEvents raised_;
   const estimator::PipelineConfig foreseen_;  ///< with what the layout makes of errors

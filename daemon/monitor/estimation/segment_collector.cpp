@@ -6,19 +6,16 @@ namespace framewatch::daemon {
 
 SegmentCollector::SegmentCollector(const estimator::PipelineConfig& config, double from_s,
                                    double to_s)
-    : from_us_(from_s * 1e6),
-      to_us_(to_s * 1e6),
-      acquisition_(config.axes, config.options,
-                   [this](const estimator::SampleSet& set) { keep(set); }) {}
+    : from_us_(from_s * 1e6), to_us_(to_s * 1e6), acquisition_(config.axes, config.options) {}
 
 void SegmentCollector::push(const estimator::AccelSample& sample) {
   if (!started_) first_us_ = to_microseconds(sample.time);
   started_ = true;
-  acquisition_.push(sample);
+  for (const estimator::SampleSet& set : acquisition_.push(sample)) keep(set);
 }
 
 void SegmentCollector::finish() {
-  acquisition_.finish();
+  for (const estimator::SampleSet& set : acquisition_.finish()) keep(set);
 }
 
 void SegmentCollector::keep(const estimator::SampleSet& set) {

@@ -19,7 +19,7 @@ HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(conf
   history_.emplace(config);
 }
 
-std::vector<event_t> HistoryReport::look(std::int64_t now_us) {
+std::vector<event_t> HistoryReport::check(std::int64_t now_us) {
   if (!history_) return {};
   history_->tick(steady_clock_us());
   if (!second_.due(now_us)) return {};

@@ -27,8 +27,8 @@ class HistoryReport {
   History* history() { return history_ ? &*history_ : nullptr; }
   /// Its own events that are raised.
   RaisedEvents& raised() { return raised_; }
-  /// Several times a second; now_us: of the host's clock. What events it published.
-  std::vector<event_t> look(std::int64_t now_us);
+  /// Call it several times a second. Returns the events that it published. now_us: host clock.
+  std::vector<event_t> check(std::int64_t now_us);
 
  private:
   const Config& config_;

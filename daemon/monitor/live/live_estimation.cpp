@@ -1,7 +1,5 @@
 #include "daemon/monitor/live/live_estimation.h"
 
-#include <poll.h>
-
 #include <utility>
 
 #include "daemon/base/clocks.h"
@@ -24,10 +22,11 @@ LiveEstimation::LiveEstimation(const Config& config, drivers::LcmProvider& lcm,
       lcm_(lcm),
       can_log_(can_log),
       request_channel_(acknowledge_channel(config)),
-      source_(lcm, with(heard_channels(config), request_channel_), config.lcm.queue_capacity,
-              [this](const drivers::LcmMessage& message) { on_message(message); }),
-      can_(can_map_, can_log != nullptr,
-           [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {
+      intake_(
+          lcm, with(heard_channels(config), request_channel_), config.lcm.queue_capacity,
+          [this](const drivers::LcmMessage& message) { on_message(message); }, can_map_,
+          can_log != nullptr,
+          [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {
   times_.newest_us.resize(config.pipeline.axes.size());
   begin_estimation();
 }
@@ -38,20 +37,9 @@ void LiveEstimation::begin_estimation() {
       [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
         lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
         if (history_ != nullptr) history_->message(channel, bytes);
-      });
+      },
+      this);
   if (!segments_ && config_->gap && !config_->gap->store.empty()) segments_.emplace(*config_);
-  estimation_->tap({[this](const estimator::AccelSample& sample) { on_sample(sample); },
-                    [this](const temperature_t& temperature) {
-                      if (history_ != nullptr) history_->temperature(temperature);
-                    },
-                    [this](const estimator::GapNews& news) {
-                      if (segments_ && news.state == estimator::AlarmState::raised)
-                        segments_->raised(news.id);
-                    },
-                    [this](const event_t& event) {
-                      if (on_event_) on_event_(event);
-                    },
-                    [this](const EventReport& report) { reports_.write(report, *config_); }});
 }
 
 void LiveEstimation::reconfigure(Config next, Reach reach) {
@@ -107,6 +95,21 @@ void LiveEstimation::on_sample(const estimator::AccelSample& sample) {
   if (history_ != nullptr) history_->sample(sample);
 }
 
+void LiveEstimation::on_temperature(const temperature_t& temperature) {
+  if (history_ != nullptr) history_->temperature(temperature);
+}
+
+void LiveEstimation::on_event(const event_t& event) {
+  if (events_.size() == kMaxEvents)
+    ++state_.queue_dropped;
+  else
+    events_.push_back(event);
+}
+
+void LiveEstimation::on_gap(const estimator::GapNews& news) {
+  if (segments_ && news.state == estimator::AlarmState::raised) segments_->raised(news.id);
+}
+
 void LiveEstimation::step_done(std::int64_t began_us, std::int64_t windows_before,
                                std::int64_t received_us) {
   times_.steps.add(1e-6 * static_cast<double>(steady_clock_us() - began_us));
@@ -121,25 +124,16 @@ bool LiveEstimation::poll(int timeout_ms) {
     feed();
     if (catching_up()) timeout_ms = 0;
   }
-  if (config_->can.empty()) return handle_messages(timeout_ms);
-  std::vector<pollfd> waiting{{source_.descriptor(), POLLIN, 0}};
-  can_.descriptors(waiting);
-  ::poll(waiting.data(), waiting.size(), timeout_ms);
-  can_.handle(steady_clock_us());
+  const bool good = intake_.poll(timeout_ms);
   for (std::size_t b = 0; b < config_->can.buses.size(); ++b) {
-    const bool gone = !can_.state(static_cast<int>(b)).open;
+    const bool gone = !can().state(static_cast<int>(b)).open;
     estimation_->notice(
         {drivers::CanNotice::Kind::interface_gone, static_cast<int>(b), !gone, 0, host_clock_us()});
   }
-  return handle_messages(0) && !can_log_failed_;
-}
-
-bool LiveEstimation::handle_messages(int timeout_ms) {
-  const bool good = source_.handle(timeout_ms);
-  const std::int64_t dropped = source_.dropped().queue_full;
+  const std::int64_t dropped = intake_.lcm().dropped().queue_full;
   state_.queue_dropped += dropped - std::exchange(lcm_dropped_, dropped);
-  state_.queue_high_water = static_cast<std::int32_t>(source_.backlog_high_water());
-  return good;
+  state_.queue_high_water = static_cast<std::int32_t>(intake_.lcm().backlog_high_water());
+  return good && !can_log_failed_;
 }
 
 void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
@@ -157,7 +151,7 @@ void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
 void LiveEstimation::estimate_frame(int bus, const drivers::CanFrame& frame) {
   const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
   estimation_->frame(bus, frame);
-  const std::int64_t dropped = can_.dropped();
+  const std::int64_t dropped = can().dropped();
   state_.queue_dropped += dropped - std::exchange(can_dropped_, dropped);
   step_done(began_us, windows, frame.stamp_us);
   estimation_->set_live(state_);
@@ -165,7 +159,8 @@ void LiveEstimation::estimate_frame(int bus, const drivers::CanFrame& frame) {
 
 void LiveEstimation::on_message(const drivers::LcmMessage& message) {
   if (message.channel == request_channel_) {
-    if (on_request_) on_request_({static_cast<const std::uint8_t*>(message.data), message.size});
+    const auto* bytes = static_cast<const std::uint8_t*>(message.data);
+    if (requests_.size() < kMaxRequests) requests_.emplace_back(bytes, bytes + message.size);
     return;
   }
   if (!catching_up()) return estimate_message(message);

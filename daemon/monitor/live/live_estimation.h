@@ -2,10 +2,8 @@
 
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,25 +14,24 @@
 #include "daemon/monitor/estimation/gap_segments.h"
 #include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/monitor/history/history.h"
+#include "daemon/monitor/live/live_intake.h"
 #include "daemon/monitor/live/live_times.h"
 #include "daemon/monitor/live/raw_backlog.h"
 #include "drivers/can/can_log.h"
-#include "drivers/can/can_source.h"
-#include "drivers/lcm/lcm_source.h"
 
 namespace framewatch::daemon {
 
-/// Live estimation: samples from one LCM instance and from CAN buses, estimates to LCM. Works
-/// inside poll().
-class LiveEstimation {
+/// Live estimation: takes samples from one LCM instance and from CAN buses, publishes estimates on
+/// LCM, and feeds the history. All work is done inside poll().
+class LiveEstimation : public EstimationListener {
  public:
-  /// `lcm` must outlive this; with memq:// every sender and receiver must use it. `can_log`, if
-  /// any, gets every frame of the buses.
+  /// `lcm` must outlive this; with memq:// every sender and receiver must use it. `can_log` may be
+  /// null; otherwise every frame of the buses is written to it.
   LiveEstimation(const Config& config, drivers::LcmProvider& lcm,
                  drivers::CanLogWriter* can_log = nullptr);
 
-  /// Opens the configured buses. One line for each problem.
-  std::vector<std::string> open_buses() { return can_.open(); }
+  /// Opens the configured buses. Returns one line for each problem.
+  std::vector<std::string> open_buses() { return intake_.open_buses(); }
 
   /// Waits for messages at most `timeout_ms` and handles those that are there. False when LCM
   /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
@@ -46,12 +43,10 @@ class LiveEstimation {
   bool catching_up() const { return !backlog_.empty() || !later_.empty(); }
   /// From now on samples and published messages are stored there too; null: no longer.
   void record_to(History* history) { history_ = history; }
-  /// From now on called with every event after it was published.
-  void on_event(std::function<void(const event_t&)> handler) { on_event_ = std::move(handler); }
-  /// From now on called with every request to acknowledge an event that is heard.
-  void on_request(std::function<void(std::span<const std::uint8_t>)> handler) {
-    on_request_ = std::move(handler);
-  }
+  /// Returns the events that were published since the last call, and forgets them.
+  std::vector<event_t> take_events() { return std::exchange(events_, {}); }
+  /// Returns the requests to acknowledge events, as received since the last call, and forgets them.
+  std::vector<std::vector<std::uint8_t>> take_requests() { return std::exchange(requests_, {}); }
   const Estimation& estimation() const { return *estimation_; }
   Estimation& estimation() { return *estimation_; }
   /// The configuration it runs with; until the next reconfigure().
@@ -61,10 +56,12 @@ class LiveEstimation {
   const LiveState& state() const { return state_; }
   static constexpr std::int64_t kFeed_ms = 50;
   static constexpr std::size_t kMaxLater = 1'000'000;  ///< messages and frames kept meanwhile
+  static constexpr std::size_t kMaxEvents = 10'000;    ///< between two take_events()
+  static constexpr std::size_t kMaxRequests = 16;  ///< between two take_requests(); senders repeat
   const LiveTimes& times() const { return times_; }
-  /// What LCM's receiver did not take.
-  drivers::ReceiverCounters dropped() const { return source_.dropped(); }
-  drivers::CanSource& can() { return can_; }
+  /// Messages the LCM receiver dropped.
+  drivers::ReceiverCounters dropped() const { return intake_.lcm().dropped(); }
+  drivers::CanSource& can() { return intake_.can(); }
 
  private:
   /// Of a message or frame that came while the backlog was given.
@@ -76,14 +73,17 @@ class LiveEstimation {
     int bus = 0;
     drivers::CanFrame frame{};
   };
-  bool handle_messages(int timeout_ms);
   void feed();
   void keep(Later later);
   void estimate_message(const drivers::LcmMessage& message);
   void estimate_frame(int bus, const drivers::CanFrame& frame);
   void on_message(const drivers::LcmMessage& message);
   void on_frame(int bus, const drivers::CanFrame& frame);
-  void on_sample(const estimator::AccelSample& sample);
+  void on_sample(const estimator::AccelSample& sample) override;
+  void on_temperature(const temperature_t& temperature) override;
+  void on_gap(const estimator::GapNews& news) override;
+  void on_event(const event_t& event) override;
+  void on_shaken(const EventReport& report) override { reports_.write(report, *config_); }
   void begin_estimation();
   void step_done(std::int64_t began_us, std::int64_t windows_before, std::int64_t received_us);
 
@@ -98,15 +98,14 @@ class LiveEstimation {
   std::optional<GapSegments> segments_;  ///< none: none are stored
   EventReportFiles reports_;
   History* history_ = nullptr;
-  std::function<void(const event_t&)> on_event_;
+  std::vector<event_t> events_;
   RawBacklog backlog_;
   bool feeding_ = false;
   std::deque<Later> later_;
   const std::string request_channel_;
-  std::function<void(std::span<const std::uint8_t>)> on_request_;
+  std::vector<std::vector<std::uint8_t>> requests_;
   std::unique_ptr<Estimation> estimation_;
-  drivers::LcmSource source_;
-  drivers::CanSource can_;
+  LiveIntake intake_;
 };
 
 }  // namespace framewatch::daemon

@@ -10,25 +10,18 @@
 
 namespace framewatch::daemon {
 
-LiveEvents::LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live)
+LiveEvents::LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live,
+                       HistoryReport& history)
     : config_(config),
       live_(live),
-      history_(config, lcm),
+      history_(history),
       actions_(config, lcm),
       desk_(config, lcm,
             [this](const event_t& event, const Acknowledgement& by) { acknowledged(event, by); }),
       commands_(config, "run", [this](const CommandPacket& command, const std::string& user) {
         return obey(command, user);
       }) {
-  live_.record_to(history_.history());
   actions_.raised_before(live_.estimation().raised());
-  live_.on_event([this](const event_t& event) {
-    log(event.severity >= severity::warning ? LogLevel::warning : LogLevel::notice,
-        fmt::format("{} {}: {}", event.kind, event.place, event.message));
-    actions_.event(event, live_.estimation().raised().acknowledgement(event.id) != nullptr);
-  });
-  live_.on_request(
-      [this](std::span<const std::uint8_t> request) { desk_.heard(request, host_clock_us()); });
 }
 
 void LiveEvents::acknowledged(const event_t& event, const Acknowledgement& by) {
@@ -45,8 +38,15 @@ CommandPacket LiveEvents::obey(const CommandPacket& command, const std::string& 
   return {"ACKNOWLEDGED", drivers::encoded(*answer)};
 }
 
-void LiveEvents::look() {
-  for (const event_t& event : history_.look(host_clock_us()))
+void LiveEvents::poll() {
+  for (const event_t& event : live_.take_events()) {
+    log(event.severity >= severity::warning ? LogLevel::warning : LogLevel::notice,
+        fmt::format("{} {}: {}", event.kind, event.place, event.message));
+    actions_.event(event, live_.estimation().raised().acknowledgement(event.id) != nullptr);
+  }
+  for (const std::vector<std::uint8_t>& request : live_.take_requests())
+    desk_.heard(request, host_clock_us());
+  for (const event_t& event : history_.check(host_clock_us()))
     actions_.event(event, history_.raised().acknowledgement(event.id) != nullptr);
   commands_.look(steady_clock_us());
   desk_.look(raised(), host_clock_us());

@@ -9,22 +9,21 @@
 
 namespace framewatch::daemon {
 
-/// What `framewatch run` does with events: those of the estimation and of the history go to the
-/// command and the webhook of [actions], and can be acknowledged over its socket. Keeps the
-/// history.
+/// What `framewatch run` does with events: hands those of the estimation and of the history to the
+/// command and the webhook of [actions], and acknowledges them on request.
 class LiveEvents {
  public:
-  /// All must outlive this. Attaches itself to `live`.
-  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live);
+  /// All must outlive this.
+  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history);
   LiveEvents(const LiveEvents&) = delete;
   LiveEvents& operator=(const LiveEvents&) = delete;
 
-  /// To be called several times a second.
-  void look();
+  /// Handles new events and requests. Call it several times a second.
+  void poll();
   /// Goes on with another configuration, of which [actions] may differ.
   void reconfigure(const Config& config) { actions_.reconfigure(config); }
 
-  /// Every event of this process that is raised: those of the estimation and of the history.
+  /// Returns the raised events of the estimation and of the history.
   AcknowledgeDesk::Raised raised() { return {&live_.estimation().raised(), &history_.raised()}; }
 
  private:
@@ -33,7 +32,7 @@ class LiveEvents {
 
   const Config& config_;
   LiveEstimation& live_;
-  HistoryReport history_;
+  HistoryReport& history_;
   ActionReport actions_;
   AcknowledgeDesk desk_;
   CommandSocket commands_;

@@ -76,18 +76,19 @@ RawBacklog RawBacklog::read(const Config& config, const std::vector<std::int64_t
 
 void RawBacklog::keep_strong_motion(const Config& config) {
   estimator::PipelineConfig pipeline = config.pipeline;
-  std::optional<estimator::ShakingWatch> shaking;
   std::int64_t began_us = 0;
-  estimator::Acquisition acquisition(config.pipeline.axes, config.pipeline.options,
-                                     [&](const estimator::SampleSet& set) {
-                                       (void)shaking->push(set, nullptr);
-                                       if (shaking->began()) began_us = to_microseconds(set.time);
-                                     });
+  estimator::Acquisition acquisition(config.pipeline.axes, config.pipeline.options);
   pipeline.axes = acquisition.axes();
-  shaking.emplace(pipeline, config.event_report->options);
-  for (const estimator::AccelSample& sample : samples_) acquisition.push(sample);
-  acquisition.finish();
-  if (shaking->active())
+  estimator::ShakingWatch shaking(pipeline, config.event_report->options);
+  const auto take = [&](estimator::Acquisition::SampleSets&& sets) {
+    for (const estimator::SampleSet& set : sets) {
+      (void)shaking.push(set, nullptr);
+      if (shaking.began()) began_us = to_microseconds(set.time);
+    }
+  };
+  for (const estimator::AccelSample& sample : samples_) take(acquisition.push(sample));
+  take(acquisition.finish());
+  if (shaking.active())
     drop_before(began_us - backlog_us(kBefore_s));
   else
     *this = RawBacklog(whole_);

@@ -20,6 +20,7 @@
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/estimation/state_file.h"
+#include "daemon/monitor/history/history_report.h"
 #include "daemon/monitor/live/heard_channels.h"
 #include "daemon/monitor/live/housekeeping.h"
 #include "daemon/monitor/live/live_events.h"
@@ -140,7 +141,9 @@ int run(const RunArguments& a) {
   }
   LiveEstimation& live = *estimation;
   RawBacklog missed = missed_samples(*config, live.estimation(), resumed);
-  LiveEvents events(*config, *lcm, live);
+  HistoryReport history(*config, *lcm);
+  live.record_to(history.history());
+  LiveEvents events(*config, *lcm, live, history);
   live.catch_up(std::move(missed));
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
   Housekeeping housekeeping(*config, *text, a.state, a.state_every_s, starts, resumed);
@@ -157,13 +160,14 @@ int run(const RunArguments& a) {
       ::usleep(1000 * kPoll_ms);
     }
     housekeeping.look(live, *lcm, manager, events.raised());
-    events.look();
+    events.poll();
     if (reload_requested() && housekeeping.reload(live, manager)) events.reconfigure(live.config());
   }
   manager.stopping();
   // With a state file the instants still open are published after the next start.
   if (a.state.empty()) {
     live.finish();
+    events.poll();
   } else {
     housekeeping.write_state(live);
     error = count_clean_stop(a.state, starts);

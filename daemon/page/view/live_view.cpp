@@ -38,11 +38,9 @@ LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give
       publish_(std::move(publish)),
       estimate_channels_(estimate_channels(config)),
       motion_(config.pipeline.options.rate_hz),
-      acquisition_(config.pipeline.axes, config.pipeline.options,
-                   [this](const estimator::SampleSet& set) { instant(set); }),
+      acquisition_(config.pipeline.axes, config.pipeline.options),
       intake_(
-          wanted_axes(config),
-          [this](const estimator::AccelSample& sample) { acquisition_.push(sample); },
+          wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
           intake_settings(config)),
       shaking_(config.pipeline),
       grouped_(config.pipeline.parameters().grouped()),
@@ -67,7 +65,7 @@ void LiveView::restore(const StoredHistory& stored, std::int64_t now_us) {
   std::int64_t flush =
       std::numeric_limits<std::int64_t>::min();  // before the first one, which is 1
   for (const estimator::AccelSample& sample : stored.samples) {
-    acquisition_.push(sample);
+    this->sample(sample);
     const std::int64_t at = (to_microseconds(sample.time) - last_us) / kFlush_us;
     if (at <= flush) continue;
     flush = at;
@@ -89,6 +87,10 @@ std::vector<std::string> LiveView::channels() const {
   out.insert(out.end(), estimate_channels_.begin(), estimate_channels_.end());
   out.push_back(estimate_channels_.front() + kLate);
   return out;
+}
+
+void LiveView::sample(const estimator::AccelSample& sample) {
+  for (const estimator::SampleSet& set : acquisition_.push(sample)) instant(set);
 }
 
 void LiveView::push(const std::string& name, const std::string& data) {

@@ -76,6 +76,7 @@ class LiveView {
   void keep(const std::string& name, std::string json);
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);
+  void sample(const estimator::AccelSample& sample);
   void instant(const estimator::SampleSet& instant);
   void push_if_new(const std::string& name, const std::string& json);
   /// What changes are judged against, and which of the parameters are.

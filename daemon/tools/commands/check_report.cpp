@@ -16,7 +16,6 @@
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
-#include "estimator/structure/panel_excitation.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -147,7 +146,7 @@ CheckReport make_check_report(const Config& config, int advise) {
   report.config = config;
   const estimator::PipelineConfig& c = config.pipeline;
   const std::size_t before = allocated_bytes();
-  const estimator::Pipeline pipeline(c, [](const estimator::WindowEstimate&) {});
+  const estimator::Pipeline pipeline(c);
   report.memory_bytes = allocated_bytes() - before;
   report.window_rows = pipeline.window_rows();
   report.hop_rows = pipeline.hop_rows();

@@ -11,8 +11,8 @@ constexpr const char* kIntroduction = R"(# Effects
 
 Made by `framewatch check --print-effects-markdown` from the catalogue of effects; do not edit.
 
-What a linear shear building and perfect accelerometers leave out, by the names that scenarios,
-configurations and diagnoses use. One `[[effect]]` table each:
+Effects are what a linear shear building with perfect accelerometers leaves out. Write one
+`[[effect]]` table for each; parameters without a default are required:
 
 ```toml
 [[effect]]
@@ -22,31 +22,28 @@ frame = "y1"
 k3_npm3 = 1e7
 ```
 
-d is the deformation of a frame story or floor panel in m, the b'y of [the equations](equations.md):
-of a frame its story drift, positive when the upper floor is further toward +x or +y; of a panel its
-shear angle times sqrt(Lx Ly). v is its rate. A force f is a restoring force in N, added to k d + c v
-of the element. In a panel, numbers per metre of d are so of this d.
+d is the deformation in m (b'y of [the equations](equations.md)) and v its rate. For a frame story,
+d is the story drift, positive when the upper floor is further toward +x or +y. For a floor panel, d
+is the shear angle times sqrt(Lx Ly). f is a restoring force in N, added to k d + c v.
 
-| place | keys |
-| --- | --- |
-| frame story | `story`, `frame` |
-| floor panel | `story`, `panel`: the y-parallel and the x-parallel frame where its spans start, `"x1y1"` |
-| node | `story`, `frame`: one degree of freedom |
-| two floors | `story`, `to_story` (0 is the base), `frame` |
-| crossing | `story`, `node`: `"x1y1"`, both directions |
-| floor | `story` |
-| building | `direction` |
-| whole frame | `frame`: all its stories |
-| mode | `mode`: 1 is that of the lowest natural frequency |
-| channel | `channel` |
-| two channels | `channel`, `with_channel` |
+Keys for each place:
 
-`framewatch simulate` advances the linear part of the building exactly, by the matrix exponential, and
-the laws by the fourth-order Runge-Kutta scheme in the coordinates that move with it (Lawson, SIAM J.
-Numer. Anal. 4, 1967), in parts of at most 0.5 ms. Halving them changes no response of
-`tests/simulate` by more than 3e-5 of its peak (laws with corners) or 1e-7 (smooth ones). A drop, or a
-force that sets in, does so with the first part that begins at its time or after it. Effects of
-channels act on what the sensor senses, before its noise; clipping acts after the noise.
+- frame story: `story`, `frame`
+- floor panel: `story`, `panel` (the frames where its spans start, such as `"x1y1"`)
+- node: `story`, `frame` (one degree of freedom)
+- two floors: `story`, `to_story` (0: base), `frame`
+- crossing: `story`, `node` (such as `"x1y1"`, both directions)
+- floor: `story`
+- building: `direction`
+- whole frame: `frame`
+- mode: `mode` (1: lowest natural frequency)
+- channel: `channel`
+- two channels: `channel`, `with_channel`
+
+`framewatch simulate` advances the linear part with the matrix exponential, and the laws with a
+fourth-order Runge-Kutta scheme (Lawson, SIAM J. Numer. Anal. 4, 1967) in steps of at most 0.5 ms.
+Halving the steps changes no response in `tests/simulate` by more than 3e-5 of its peak. Channel
+effects act before the sensor's noise, clipping after it.
 )";
 
 const char* place_name(estimator::PlaceKind kind) {
@@ -77,8 +74,12 @@ const char* place_name(estimator::PlaceKind kind) {
   return "";
 }
 
-std::string default_text(const estimator::EffectParameter& p) {
-  return p.default_value ? fmt::format("`{}`", *p.default_value) : "required";
+/// " (N/m, default `0`)"; empty without a unit and a default.
+std::string value_of(const estimator::EffectParameter& p) {
+  std::string out(p.unit);
+  if (p.default_value)
+    out += fmt::format("{}default `{}`", out.empty() ? "" : ", ", *p.default_value);
+  return out.empty() ? "" : fmt::format(" ({})", out);
 }
 
 }  // namespace
@@ -93,9 +94,9 @@ std::string effects_markdown() {
     if (!d.sign.empty()) out += fmt::format("{} ", d.sign);
     out += fmt::format("Source: {}.\n", d.source);
     if (d.parameters.empty()) continue;
-    out += "\n| key | unit | default | meaning |\n| --- | --- | --- | --- |\n";
+    out += "\n";
     for (const estimator::EffectParameter& p : d.parameters)
-      out += fmt::format("| `{}` | {} | {} | {} |\n", p.key, p.unit, default_text(p), p.meaning);
+      out += fmt::format("- `{}`{}: {}\n", p.key, value_of(p), p.meaning);
   }
   return out;
 }

@@ -102,9 +102,11 @@ MachineCheck check_clock() {
 
 MachineCheck check_estimate() {
   const Scenario scenario = demo_scenario();
-  std::optional<estimator::WindowEstimate> newest;
-  Estimation estimation(scenario.config, {},
-                        [&](const estimator::WindowEstimate& e) { newest = e; });
+  struct : EstimationListener {
+    void on_estimate(const estimator::WindowEstimate& estimate) override { newest = estimate; }
+    std::optional<estimator::WindowEstimate> newest;
+  } seen;
+  Estimation estimation(scenario.config, {}, &seen);
   Simulation simulation(scenario);
   std::int64_t spent_us = 0;
   while (simulation.time_s() < kShaken_s) {
@@ -120,12 +122,12 @@ MachineCheck check_estimate() {
   const estimator::ParameterTable table(scenario.config.pipeline.structure);
   double worst = 0;
   int found = 0;
-  for (int p = 0; newest && p < table.size(); ++p) {
+  for (int p = 0; seen.newest && p < table.size(); ++p) {
     const auto at = static_cast<std::size_t>(p);
     if (table[p].kind != estimator::ParameterKind::frame_stiffness ||
-        newest->reason[at] != estimator::Observability::observable)
+        seen.newest->reason[at] != estimator::Observability::observable)
       continue;
-    worst = std::max(worst, std::abs(newest->value[at] / scenario.truth[p] - 1));
+    worst = std::max(worst, std::abs(seen.newest->value[at] / scenario.truth[p] - 1));
     ++found;
   }
   const double speed = 1e6 * kShaken_s / static_cast<double>(spent_us);

@@ -54,26 +54,26 @@ std::vector<CheckedWindow> run_checked_windows(const estimator::PipelineConfig& 
   std::vector<CheckedWindow> kept;
   estimator::ModelFit newest(static_cast<std::size_t>(config.parameters().size()));
   std::int64_t next_us = std::llround(1e6 * from_s);
-  int pipeline_rows = 0;
-  estimator::Pipeline pipeline(
-      config,
-      [&](const estimator::WindowEstimate& estimate) {
-        const std::int64_t end_us = to_microseconds(estimate.end);
-        const bool whole = estimate.rows == pipeline_rows;
-        if (!whole || estimate.status == estimator::WindowStatus::warming_up || end_us < next_us)
-          return;
-        kept.push_back({estimate, newest});
-        next_us = end_us + std::llround(1e6 * every_s);
-      },
-      {}, {}, [&](const estimator::ModelFit& fit) { newest = fit; });
-  pipeline_rows = pipeline.window_rows();
+  estimator::Pipeline pipeline(config);
+  const int pipeline_rows = pipeline.window_rows();
+  const auto take = [&](estimator::Pipeline::Results&& results) {
+    for (const estimator::PipelineResult& result : results) {
+      if (const estimator::WindowEstimate* e = result.estimate;
+          e != nullptr && e->rows == pipeline_rows &&
+          e->status != estimator::WindowStatus::warming_up && to_microseconds(e->end) >= next_us) {
+        kept.push_back({*e, newest});
+        next_us = to_microseconds(e->end) + std::llround(1e6 * every_s);
+      }
+      if (result.model != nullptr) newest = *result.model;
+    }
+  };
   for (Eigen::Index i = 0; i < accel.rows(); ++i) {
     const estimator::Time time = estimator::from_microseconds(
         std::llround(static_cast<double>(i) * 1e6 / config.options.rate_hz));
     for (Eigen::Index a = 0; a < accel.cols(); ++a)
-      pipeline.push({time, static_cast<int>(a), accel(i, a)});
+      take(pipeline.push({time, static_cast<int>(a), accel(i, a)}));
   }
-  pipeline.finish();
+  take(pipeline.finish());
   return kept;
 }
 

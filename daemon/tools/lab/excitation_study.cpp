@@ -87,22 +87,24 @@ void listen_to_noise(const estimator::Structure& structure, const Eigen::VectorX
   if (silence.noise_configured)
     for (estimator::SensorAxis& axis : config.axes)
       axis.noise_density = kSilence_mps2 / std::sqrt(kTrialRate_hz / 2);
-  estimator::Pipeline pipeline(config, [&](const estimator::WindowEstimate& estimate) {
+  const auto take = [&](const estimator::WindowEstimate& estimate) {
     if (estimate.rows == 0) return;
     ++silence.windows;
     silence.published += std::any_of(
         estimate.reason.begin(), estimate.reason.end(),
         [](estimator::Observability o) { return o == estimator::Observability::observable; });
-  });
+  };
+  estimator::Pipeline pipeline(config);
   estimator::Random random(1);
   const auto instants = std::llround(silence.hours * 3600 * kTrialRate_hz);
   for (std::int64_t i = 0; i < instants; ++i) {
     const estimator::Time time =
         estimator::from_microseconds(std::llround(static_cast<double>(i) * 1e6 / kTrialRate_hz));
     for (std::size_t a = 0; a < config.axes.size(); ++a)
-      pipeline.push({time, static_cast<int>(a), kSilence_mps2 * random.normal()});
+      estimator::each_main_window(
+          pipeline.push({time, static_cast<int>(a), kSilence_mps2 * random.normal()}), take);
   }
-  pipeline.finish();
+  estimator::each_main_window(pipeline.finish(), take);
 }
 
 double change_by_bias(const estimator::Structure& structure, const Eigen::VectorXd& truth,

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "estimator/motion/motion_history.h"
+#include "estimator/identify/solve/batch_least_squares.h"
 
 namespace framewatch::daemon {
 

@@ -46,7 +46,7 @@ std::vector<IdentifiedWindows> identify(estimator::PipelineConfig config,
   const auto size = static_cast<std::size_t>(estimator::ParameterTable(config.structure).size());
   std::vector<IdentifiedWindows> out(
       stages.size(), {kNames[static_cast<int>(way)], std::vector<std::vector<double>>(size)});
-  estimator::Pipeline pipeline(config, [&](const estimator::WindowEstimate& estimate) {
+  const auto take = [&](const estimator::WindowEstimate& estimate) {
     if (estimate.rows == 0) return;
     const double end_s = 1e-6 * static_cast<double>(to_microseconds(estimate.end));
     for (std::size_t s = 0; s < stages.size(); ++s) {
@@ -54,13 +54,16 @@ std::vector<IdentifiedWindows> identify(estimator::PipelineConfig config,
       for (std::size_t p = 0; p < size; ++p)
         out[s].values[p].push_back(way == Way::matched ? estimate.value[p] : estimate.solution[p]);
     }
-  });
+  };
+  estimator::Pipeline pipeline(config);
   for (Eigen::Index i = 0; i < accel.rows(); ++i)
     for (Eigen::Index a = 0; a < accel.cols(); ++a)
-      pipeline.push({estimator::from_microseconds(
-                         std::llround(static_cast<double>(i) * 1e6 / config.options.rate_hz)),
-                     static_cast<int>(a), accel(i, a)});
-  pipeline.finish();
+      estimator::each_main_window(
+          pipeline.push({estimator::from_microseconds(
+                             std::llround(static_cast<double>(i) * 1e6 / config.options.rate_hz)),
+                         static_cast<int>(a), accel(i, a)}),
+          take);
+  estimator::each_main_window(pipeline.finish(), take);
   return out;
 }
 

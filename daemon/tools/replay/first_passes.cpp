@@ -34,10 +34,10 @@ bool holds(const estimator::ParameterTable& table, const Eigen::VectorXd& before
 }
 
 /// One pass, from what it starts with.
-class Pass {
+class Pass : private EstimationListener {
  public:
   Pass(const Config& config, const std::optional<estimator::Tuning>& start)
-      : estimation_(config, {}, [this](const estimator::WindowEstimate& w) { look(w); }) {
+      : estimation_(config, {}, this) {
     if (start) estimation_.start_tuned(*start);
     began_ = held_ = theta0();
   }
@@ -69,7 +69,7 @@ class Pass {
   bool same_as(const Eigen::VectorXd& before) const {
     return holds(estimation_.pipeline().parameters(), before, theta0());
   }
-  void look(const estimator::WindowEstimate& window) {
+  void on_estimate(const estimator::WindowEstimate& window) override {
     if (!same_as(held_)) {
       held_ = theta0();
       windows_ = 0;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/tools/replay/replay_survey.h"
-#include "estimator/setup/tuning.h"
+#include "estimator/setup/pipeline_config.h"
 
 namespace framewatch::daemon {
 

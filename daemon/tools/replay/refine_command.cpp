@@ -154,13 +154,14 @@ int refine(const RefineArguments& a) {
   const estimator::ParameterTable streamed = pipeline_config.parameters();
   SegmentCollector collector(pipeline_config, a.from_s, to_s);
   std::vector<double> streaming(std::size_t(streamed.size()), std::nan(""));
-  estimator::Pipeline pipeline(pipeline_config, [&](const estimator::WindowEstimate& estimate) {
+  const auto take = [&](const estimator::WindowEstimate& estimate) {
     const auto end_us = static_cast<double>(to_microseconds(estimate.end) - collector.first_us());
     if (end_us > 1e6 * to_s + 1) return;
     for (std::size_t p = 0; p < streaming.size(); ++p)
       if (estimate.reason[p] == estimator::Observability::observable)
         streaming[p] = estimate.value[p];
-  });
+  };
+  estimator::Pipeline pipeline(pipeline_config);
   ProgressLine progress("refine", false);
   std::int64_t pushed = 0;
   const auto sink = [&](const estimator::AccelSample& sample) {
@@ -171,7 +172,7 @@ int refine(const RefineArguments& a) {
     collector.push(sample);
     if (static_cast<double>(to_microseconds(sample.time) - collector.first_us()) <=
         1e6 * (to_s + pipeline_config.options.lateness_s))
-      pipeline.push(sample);
+      estimator::each_main_window(pipeline.push(sample), take);
   };
   drivers::AccelIntake intake(wanted_axes(*config), sink, intake_settings(*config));
   for (const ReplayInput& input : survey.inputs()) {
@@ -180,7 +181,7 @@ int refine(const RefineArguments& a) {
     fmt::print(stderr, "{}\n", printable_lines(problem));
     return kBadInput;
   }
-  pipeline.finish();
+  estimator::each_main_window(pipeline.finish(), take);
   collector.finish();
 
   const RefinedSegment segment = without_silent_channels(pipeline_config, collector);

@@ -57,7 +57,7 @@ std::int64_t bytes_of(const std::vector<std::string>& paths) {
 }
 
 /// One replay, from the first byte to the summary.
-class ReplayRun {
+class ReplayRun : private EstimationListener {
  public:
   ReplayRun(const ReplayArguments& a, const Config& config,
             std::optional<Expectations> expectations)
@@ -72,23 +72,8 @@ class ReplayRun {
             std::numeric_limits<double>::infinity()),
         series_(config.pipeline.parameters(), expectations_.has_value(),
                 config.pipeline.options.min_snr),
-        estimation_(config, sink(), [this](const estimator::WindowEstimate& e) {
-          series_.add(e);
-          learner_.push(e);
-          if (floors_) floors_->follow(e);
-        }) {
+        estimation_(config, sink(), this) {
     survey_.declare(a.record);
-    Estimation::Taps taps;
-    if (!a.event_reports.empty())
-      taps.shaken = [this](const EventReport& report) {
-        const std::string problem = write_event_report(report, config_, a_.event_reports);
-        if (failed_.empty()) failed_ = problem;
-      };
-    if (!a.floors.empty())
-      taps.instant = [this](const estimator::SampleSet& instant) {
-        if (failed_.empty() && floors_ && !floors_->put(instant)) failed_ = floors_->error();
-      };
-    estimation_.tap(std::move(taps));
   }
 
   int run() {
@@ -119,7 +104,21 @@ class ReplayRun {
   }
 
  private:
-  /// Messages are made for somebody only.
+  void on_estimate(const estimator::WindowEstimate& e) override {
+    series_.add(e);
+    learner_.push(e);
+    if (floors_) floors_->follow(e);
+  }
+  void on_shaken(const EventReport& report) override {
+    if (a_.event_reports.empty()) return;
+    const std::string problem = write_event_report(report, config_, a_.event_reports);
+    if (failed_.empty()) failed_ = problem;
+  }
+  void on_instant(const estimator::SampleSet& instant) override {
+    if (failed_.empty() && floors_ && !floors_->put(instant)) failed_ = floors_->error();
+  }
+
+  /// Empty when no output needs messages.
   MessageSink sink() {
     const bool wanted = !a_.out.empty() || a_.lcm || config_.watch ||
                         (expectations_.has_value() && !expectations_->events.empty());

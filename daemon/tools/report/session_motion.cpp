@@ -21,11 +21,10 @@ constexpr std::int64_t kMaxValues = 1LL << 26;
 class Collector {
  public:
   explicit Collector(const estimator::PipelineConfig& config)
-      : acquisition_(config.axes, config.options,
-                     [this](const estimator::SampleSet& set) { keep(set); }) {}
+      : acquisition_(config.axes, config.options) {}
 
-  void push(const estimator::AccelSample& sample) { acquisition_.push(sample); }
-  void finish() { acquisition_.finish(); }
+  void push(const estimator::AccelSample& sample) { keep(acquisition_.push(sample)); }
+  void finish() { keep(acquisition_.finish()); }
   bool too_long() const { return too_long_; }
   const std::vector<estimator::SensorAxis>& axes() const { return acquisition_.axes(); }
   std::int64_t first_us() const { return first_us_; }
@@ -37,6 +36,9 @@ class Collector {
   }
 
  private:
+  void keep(estimator::Acquisition::SampleSets&& sets) {
+    for (const estimator::SampleSet& set : sets) keep(set);
+  }
   void keep(const estimator::SampleSet& set) {
     if (first_index_ < 0) {
       first_index_ = set.index;

@@ -1,7 +1,6 @@
 #include "daemon/tools/session/record_command.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -24,16 +23,15 @@
 #include "daemon/base/stop_signal.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/live/heard_channels.h"
+#include "daemon/monitor/live/live_intake.h"
 #include "daemon/tools/session/recorder.h"
 #include "daemon/tools/session/session_command.h"
 #include "daemon/tools/session/session_desk.h"
 #include "daemon/tools/session/session_finish.h"
-#include "drivers/can/can_source.h"
 #include "drivers/files/descriptor.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/partial_file.h"
-#include "drivers/lcm/lcm_source.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -74,14 +72,14 @@ class RecordCommand {
         lcm_(lcm),
         recorder_(config, a.out, [this](const std::string& folder) { ended(folder); }),
         desk_(config, recorder_),
-        source_(lcm, channels(), config.lcm.queue_capacity,
-                [this](const drivers::LcmMessage& m) { message(m); }),
         can_map_(listening(config.can)),
-        can_(can_map_, true,
-             [this](int bus, const drivers::CanFrame& frame) { recorder_.frame(bus, frame); }) {}
+        intake_(
+            lcm, channels(), config.lcm.queue_capacity,
+            [this](const drivers::LcmMessage& m) { message(m); }, can_map_, true,
+            [this](int bus, const drivers::CanFrame& frame) { recorder_.frame(bus, frame); }) {}
 
   int run() {
-    for (const std::string& note : can_.open()) log(LogLevel::warning, note);
+    for (const std::string& note : intake_.open_buses()) log(LogLevel::warning, note);
     step_ = a_.standby ? Step::standby : a_.check ? Step::check : Step::begin;
     while (step_ != Step::done) {
       poll();
@@ -111,15 +109,8 @@ class RecordCommand {
   }
 
   void poll() {
-    if (config_.can.empty()) {
-      if (!source_.handle(kPoll_ms) && !stop_requested()) ::usleep(1000 * kPoll_ms);
-      return;
-    }
-    std::vector<pollfd> waiting{{source_.descriptor(), POLLIN, 0}};
-    can_.descriptors(waiting);
-    ::poll(waiting.data(), waiting.size(), kPoll_ms);
-    can_.handle(steady_clock_us());
-    (void)source_.handle(0);
+    const bool good = intake_.poll(kPoll_ms);
+    if (!good && config_.can.empty() && !stop_requested()) ::usleep(1000 * kPoll_ms);
   }
 
   void fail(const std::string& why) {
@@ -290,9 +281,8 @@ class RecordCommand {
   drivers::LcmProvider& lcm_;
   Recorder recorder_;
   SessionDesk desk_;
-  drivers::LcmSource source_;
   drivers::CanMap can_map_;
-  drivers::CanSource can_;
+  LiveIntake intake_;
   Step step_ = Step::standby;
   int exit_code_ = 0;
   bool stopping_ = false;

@@ -48,13 +48,11 @@ Recorder::Recorder(const Config& config, std::string sessions, Ended ended)
     : config_(config),
       sessions_(std::move(sessions)),
       ended_(std::move(ended)),
-      acquisition_(
-          config.pipeline.axes, config.pipeline.options,
-          [this](const estimator::SampleSet& set) { keep(set); }, true),
+      acquisition_(config.pipeline.axes, config.pipeline.options, true),
       intake_(
-          wanted_axes(config), [this](const estimator::AccelSample& s) { acquisition_.push(s); },
+          wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
           intake_settings(config)),
-      can_(config.can, [this](const estimator::AccelSample& s) { acquisition_.push(s); }),
+      can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
       rest_(config.pipeline.axes.size(), config.pipeline.options.rate_hz),
       check_(acquisition_.axes(), config.pipeline.options.rate_hz),
       taps_(config.pipeline.axes.size(), config.pipeline.options.rate_hz),
@@ -96,6 +94,10 @@ void Recorder::store(KeptMessage message) {
                                              message.channel == config_.lcm.prefix + "PARAMETERS"))
     tables_[message.channel] = message;
   if (!log_) before_.push(std::move(message));
+}
+
+void Recorder::sample(const estimator::AccelSample& sample) {
+  for (const estimator::SampleSet& set : acquisition_.push(sample)) keep(set);
 }
 
 void Recorder::keep(const estimator::SampleSet& set) {

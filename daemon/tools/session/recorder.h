@@ -69,6 +69,7 @@ class Recorder {
 
  private:
   void store(KeptMessage message);
+  void sample(const estimator::AccelSample& sample);
   void keep(const estimator::SampleSet& set);
   void look_for_tap(const std::vector<double>& distance);
   void look_for_trigger(const std::vector<double>& distance);

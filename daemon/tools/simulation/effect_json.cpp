@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "estimator/structure/place_names.h"
+#include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/locate/candidate_places.h"
-#include "estimator/numeric/row_matrix.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 
 #include "estimator/refine/measured_building.h"
-#include "estimator/structure/bending_stiffness.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"

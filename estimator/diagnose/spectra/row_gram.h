@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "estimator/numeric/row_matrix.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 

@@ -5,6 +5,7 @@
 #include "estimator/structure/story_groups.h"
 
 namespace framewatch::estimator {
+
 Deformations::Deformations(const Structure& s, const FloorLayout& layout,
                            const std::vector<SensorAxis>& axes)
     : layout_(&layout), noise_density_(noise_densities(axes)) {
@@ -28,7 +29,8 @@ Deformations::Deformations(const Structure& s, const FloorLayout& layout,
         own_frame.push_back(static_cast<int>(a));
     }
     if (!place(0, f).empty() || own_frame.empty()) continue;
-    // A base that turns as a plane: the least-squares line through the frames that are measured.
+    // The base turns as a plane: the least-squares line through its measured frames gives the
+    // others.
     double mean = 0, spread = 0;
     const auto at = [&](int axis) {
       return line_position(s, axes[static_cast<std::size_t>(axis)].frame);
@@ -100,6 +102,23 @@ void Deformations::compute(const DriftControlledIntegrator& motion, DeformationS
       out[2 * frames + panels + p] =
           panel.bu * (u1.first - u0.first) + panel.bv * (v1.first - v0.first);
     }
+  }
+}
+
+DeformationSet AxisMotion::make_set() const {
+  const auto axes = static_cast<std::size_t>(axes_);
+  return {std::vector<double>(axes * kSignals, 0.0), std::vector<std::uint8_t>(axes, 0)};
+}
+
+void AxisMotion::compute(const DriftControlledIntegrator& motion, DeformationSet& set) const {
+  double* out = set.values.data();
+  for (int axis = 0; axis < axes_; ++axis) {
+    set.known[static_cast<std::size_t>(axis)] = motion.valid(axis) ? 1 : 0;
+    *out++ = motion.value(axis);
+    *out++ = motion.first(axis);
+    *out++ = motion.second(axis);
+    *out++ = motion.held_first(axis);
+    *out++ = motion.held_second(axis);
   }
 }
 

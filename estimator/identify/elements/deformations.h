@@ -5,17 +5,36 @@
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/elements/motion_source.h"
 #include "estimator/motion/drift_controlled_integrator.h"
 #include "estimator/structure/sensors.h"
 
 namespace framewatch::estimator {
 
-/// Turns filtered axis motion into element deformations, floor by floor:
-/// [p of the frames, p' of the frames, p of the panels, p' of the panels] as element deformations
-/// (absolute motion of the upper end minus the lower, panels sheared), then mass times p'' of the
-/// frames, absolute. stride() values per floor; the first own() of them follow FloorLayout. Flags:
-/// one per (floor 0..N, frame), its motion is known; floor 0 is the base.
+/// The motion of the whole building at one instant, from which regression rows are formed.
+struct DeformationSet {
+  std::vector<double> values;       ///< in the order that the MotionSource defines
+  std::vector<std::uint8_t> known;  ///< flags of the measured places, in the same order
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a.finite(values);
+    a.each_within(known, 0, 1);
+  }
+};
+
+/// Turns the filtered motion of the axes into the motion that rows are formed from.
+class MotionSource {
+ public:
+  virtual ~MotionSource() = default;
+  virtual void compute(const DriftControlledIntegrator& motion, DeformationSet& set) const = 0;
+  virtual DeformationSet make_set() const = 0;
+};
+
+/// Turns the filtered motion of the axes into element deformations. Each floor has stride() values:
+/// p of the frames, p' of the frames, p of the panels, p' of the panels, then mass times the
+/// absolute p'' of the frames. A frame's deformation is the absolute motion of its upper end minus
+/// that of its lower end; a panel's is its shear. The first own() values follow FloorLayout. There
+/// is one flag per (floor 0..N, frame): its motion is known. Floor 0 is the base.
 class Deformations : public MotionSource {
  public:
   Deformations(const Structure& structure, const FloorLayout& layout,
@@ -26,16 +45,17 @@ class Deformations : public MotionSource {
   void compute(const DriftControlledIntegrator& motion, DeformationSet& set) const override;
   DeformationSet make_set() const override;
 
-  /// An axis' share in the motion of a place.
+  /// The share of an axis in the motion of a place.
   struct Weighted {
     int axis;
     double weight;
   };
-  /// The axes that give the motion at (floor 0..N, frame); empty when no sensor does.
+  /// Returns the axes that give the motion at (floor 0..N, frame); empty if no sensor does.
   const std::vector<Weighted>& at(int floor, int frame) const {
     return place_[static_cast<std::size_t>(floor * layout_->frames() + frame)];
   }
-  /// Configured noise of every axis, m/s^2/sqrt(Hz); kDefaultNoiseDensity where it is not.
+  /// Returns the configured noise of every axis, m/s^2/sqrt(Hz), or kDefaultNoiseDensity where it
+  /// is not configured.
   const std::vector<double>& noise_density() const { return noise_density_; }
 
  private:
@@ -50,9 +70,25 @@ class Deformations : public MotionSource {
   std::vector<Panel> panels_;
 };
 
-/// Variance of one sample of white sensor noise, (m/s^2)^2; density one-sided, m/s^2/sqrt(Hz).
+/// Returns the variance of one sample of white sensor noise, (m/s^2)^2, of a one-sided density,
+/// m/s^2/sqrt(Hz).
 inline double noise_variance(double density, double rate_hz) {
   return density * density * rate_hz / 2;
 }
+
+/// The filtered motion of every axis, unchanged: kSignals values and one flag per axis.
+class AxisMotion : public MotionSource {
+ public:
+  /// Signals per axis: p, p', p'', and p', p'' for the inputs of a simulation (held_triple).
+  static constexpr int kSignals = 5;
+  enum Signal { value, first, second, held_first, held_second };
+
+  explicit AxisMotion(int axes) : axes_(axes) {}
+  void compute(const DriftControlledIntegrator& motion, DeformationSet& set) const override;
+  DeformationSet make_set() const override;
+
+ private:
+  int axes_;
+};
 
 }  // namespace framewatch::estimator

@@ -9,15 +9,16 @@
 
 namespace framewatch::estimator {
 
-/// Order of the unknowns floor by floor, which makes the normal equations block tridiagonal.
+/// The order of the unknowns floor by floor, which makes the normal equations block tridiagonal.
 /// The equations of floor i involve [k of its frames, c of its frames, G, G_c] (its own unknowns),
-/// then [k, c] of the next story's frames, then the right-hand side: together the floor's front.
+/// then [k, c] of the next story's frames, then the right-hand side. Together they are the floor's
+/// front.
 ///
-/// Of groups of stories all equations may hold all unknowns (bending couples the whole building):
-/// they are those of one floor, with every unknown its own.
+/// With groups of stories, every equation may hold every unknown, because bending couples the whole
+/// building. The layout then has one floor that owns all unknowns.
 class FloorLayout {
  public:
-  /// axes: asked of a building of groups alone, whose equations are at most as many.
+  /// axes: needed for a building in groups only, which has at most one equation per axis.
   FloorLayout(const Structure& structure, const ParameterTable& table,
               const std::vector<SensorAxis>& axes = {});
 
@@ -25,25 +26,26 @@ class FloorLayout {
   int floors() const { return floors_; }
   int frames() const { return frames_; }
   int panels() const { return panels_; }
-  /// Most equations of a floor.
+  /// Returns the largest number of equations of a floor.
   int most_rows() const { return rows_; }
-  /// Unknowns that belong to a floor: 2 frames + 2 panels.
+  /// Returns the number of unknowns of a floor: 2 frames + 2 panels.
   int own() const { return own_; }
-  /// Unknowns of a story that the floor below knows: its first ones.
+  /// Returns how many unknowns of a story the equations of the floor below hold: its first ones.
   int shared() const { return grouped_ ? 0 : 2 * frames_; }
-  /// Unknowns of the next story in this floor's equations; 0 at the top.
+  /// Returns the number of unknowns of the next story in this floor's equations; 0 at the top.
   int next(int floor) const { return floor + 1 < floors_ ? shared() : 0; }
-  /// Flags of what is measured: of frames on floors and at the base, or of a group's axes.
+  /// Returns the number of flags of measured places: frames on floors and at the base, or axes in
+  /// groups.
   int places() const { return places_; }
   int most_front() const { return own_ + shared() + 1; }
-  /// own + next + 1 (right-hand side).
+  /// Returns the length of a floor's front: own + next + 1 (right-hand side).
   int front(int floor) const { return own() + next(floor) + 1; }
   int unknowns() const { return floors_ * own(); }
-  /// theta index of unknown `position` (0..own-1) of a floor; floors count from 0.
+  /// Returns the theta index of unknown `position` (0..own-1) of a floor. Floors count from 0.
   int parameter(int floor, int position) const;
   ParameterKind kind(int position) const { return kind_[static_cast<std::size_t>(position)]; }
-  /// Entry at frame f of the floor of b_e, docs/equations.md (2) and (3); e: the element of front
-  /// unknown `position`.
+  /// Returns the entry of b_e at frame f of the floor, docs/equations.md (2) and (3), for the
+  /// element e of front unknown `position`.
   double coefficient(int position, int f) const {
     return coefficient_[static_cast<std::size_t>(position * frames_ + f)];
   }
@@ -52,7 +54,7 @@ class FloorLayout {
   bool grouped_;
   int floors_, frames_, panels_, rows_, places_, own_;
   std::vector<int> parameter_;
-  std::vector<ParameterKind> kind_;  ///< of a floor's own unknowns
+  std::vector<ParameterKind> kind_;  ///< kinds of a floor's unknowns
   std::vector<double> coefficient_;  ///< (own + 2 frames) x frames
 };
 

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <cstddef>
 
+#include "estimator/structure/parameter_table.h"
+
 namespace framewatch::estimator {
 namespace {
 
 constexpr double kPeriodPerStory = 0.1;  // s
 constexpr double kGuessedDamping = 0.02;
-constexpr double kLargestStep = 5;     // retuning: most a parameter may move at once
-constexpr double kTrustedError = 0.1;  // retuning: relative standard error trusted by half
+constexpr double kLargestStep = 5;  // retuning: largest factor by which a parameter moves at once
+constexpr double kTrustedError = 0.1;  // retuning: relative standard error that is trusted by half
 
 }  // namespace
 
@@ -72,6 +74,19 @@ void retuned_design(const FloorLayout& layout, const ParameterTable& table,
     const double factor = work.factor[static_cast<std::size_t>(p)];
     out[p] = design[p] * (factor > 0 ? factor : unseen[static_cast<int>(table[p].kind)]);
   }
+}
+
+namespace {
+
+/// Standard deviation over tolerance, for a design whose error is uniform within its tolerance.
+constexpr double kUniform = 0.58;
+
+}  // namespace
+
+PerturbedDesigns::PerturbedDesigns(const FloorLayout& layout) : own_(layout.own()) {
+  for (int u = 0; u < layout.unknowns(); ++u)
+    for (int c = 0; c < kCount; ++c)
+      error_.push_back(kUniform * design_tolerance(layout.kind(u % own_)) * fixed_sign(u, c));
 }
 
 }  // namespace framewatch::estimator

@@ -42,8 +42,8 @@ void BoxplotWindow::push(double value) {
                                   static_cast<int>(guide_.size()), leaving, entering);
 }
 
-/// With n values there are two sorted ones on both sides of probability q / 4, and how far it lies
-/// from the lower to the upper one, in eighths: place = q n / 4 - 1 / 2.
+/// With n values, probability q / 4 lies between two sorted values. Its place, in eighths from the
+/// lower one, follows from q n / 4 - 1 / 2.
 double BoxplotWindow::quartile(std::size_t q) const {
   const std::size_t eighths = 2 * q * count_;
   const std::size_t last = 8 * (count_ - 1);

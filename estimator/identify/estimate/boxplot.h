@@ -6,10 +6,10 @@
 
 namespace framewatch::estimator {
 
-/// Exact boxplot of one parameter over the last `windows` windows, as MATLAB draws it: sorted value
-/// i at probability (i - 0.5)/n, linear between; outliers strictly beyond 1.5 interquartile ranges;
-/// whiskers at the most extreme values that are none. Values that are not finite take a place but
-/// do not count. No windows: no statistics.
+/// Exact boxplot of one parameter over the last `windows` windows, as MATLAB draws it. Sorted value
+/// i has probability (i - 0.5)/n, linear in between. Outliers lie strictly beyond 1.5 interquartile
+/// ranges; whiskers end at the most extreme values that are not outliers. Values that are not
+/// finite take a place but do not count. Without windows, there are no statistics.
 class BoxplotWindow {
  public:
   explicit BoxplotWindow(int windows);
@@ -28,12 +28,12 @@ class BoxplotWindow {
 
  private:
   double quartile(std::size_t q) const;
-  /// Whether the sorted values are those of the ring.
+  /// Returns true if the sorted values are those of the ring.
   bool consistent() const;
 
-  std::vector<double> ring_;    ///< in order of arrival; infinite: does not count
-  std::vector<double> sorted_;  ///< ascending, infinite beyond the values that count
-  std::vector<double> guide_;   ///< every kGuideStep-th of them: see kernels.h
+  std::vector<double> ring_;    ///< in order of arrival; infinite values do not count
+  std::vector<double> sorted_;  ///< ascending; infinite after the values that count
+  std::vector<double> guide_;   ///< every kGuideStep-th sorted value, see kernels.h
   std::size_t next_ = 0, count_ = 0;
 };
 

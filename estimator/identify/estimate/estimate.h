@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -9,9 +10,10 @@ namespace framewatch::estimator {
 
 enum class WindowStatus { warming_up, valid, nothing_identifiable };
 
-/// Why a parameter has no value; observable means it has one. quiet: its element moves too little
-/// above the sensors' noise; floor_too_stiff: the frames move, but this floor panel does not shear
-/// enough; symmetric_plan: it cannot shear, because the frames of each direction are alike.
+/// Tells if a parameter has a value (observable), or why not.
+///   quiet            its element moves too little above the sensors' noise
+///   floor_too_stiff  the frames move, but this floor panel does not shear enough
+///   symmetric_plan   the panel cannot shear, because the frames of each direction are alike
 enum class Observability {
   observable,
   warming_up,
@@ -21,8 +23,8 @@ enum class Observability {
   channel_lost
 };
 
-/// Statistics of one parameter over those of the last windows in which it was observable, as
-/// MATLAB's boxplot draws them; NaN when there was none.
+/// Boxplot statistics of one parameter over the last windows in which it was observable, as MATLAB
+/// draws them; NaN without such windows.
 struct BoxplotStatistics {
   double q1;
   double median;
@@ -30,7 +32,7 @@ struct BoxplotStatistics {
   double whisker_low;
   double whisker_high;
   int outliers = 0;
-  int count = 0;  ///< windows behind the numbers
+  int count = 0;  ///< number of windows in the statistics
 
   template <typename Archive>
   void archive(Archive& a) {
@@ -38,15 +40,16 @@ struct BoxplotStatistics {
   }
 };
 
-/// What one window says. Vectors follow the parameter table; entries that are not observable are
-/// NaN. A value-initialised estimate is not valid.
+/// The result of one window. Vectors follow the parameter table; entries that are not observable
+/// are NaN. A value-initialized estimate is not valid.
 struct WindowEstimate {
   WindowEstimate() = default;
   explicit WindowEstimate(std::size_t parameters);
 
-  /// Given after its time: when it ended, the filters had not been tuned to the building yet.
+  /// Published after its time, because the filters were not tuned to the building when the window
+  /// ended.
   bool late = false;
-  int window = 0;  ///< 0 = the main window, i = EstimatorOptions::other_windows_s[i - 1]
+  int window = 0;  ///< 0: the main window; i: EstimatorOptions::other_windows_s[i - 1]
   Time start;
   Time end;
   std::int64_t sequence = -1;
@@ -56,18 +59,18 @@ struct WindowEstimate {
   std::vector<double> value;      ///< SI
   std::vector<double> std_error;  ///< SI, one standard deviation
   std::vector<Observability> reason;
-  std::vector<double> snr;  ///< regressor energy over its expected noise energy
-  /// rms deformation of a stiffness parameter's element in the window, m (ElementDrift); NaN: not
-  /// known, and in long windows.
+  std::vector<double> snr;  ///< energy of the regressor over its expected noise energy
+  /// Rms deformation of a stiffness parameter's element in the window, m (ElementDrift). NaN if
+  /// unknown and in long windows.
   std::vector<double> amplitude;
   std::vector<double> prior_share;  ///< 0..1: share of the prior in the value
-  std::vector<double> noise_share;  ///< 0..1: of the noise that remains in the regressors
-  /// The newest value that was observable, this window's or an older one's, with the end of its
-  /// window; NaN when there was none. Main window only.
+  std::vector<double> noise_share;  ///< 0..1: share of the noise that remains in the regressors
+  /// The newest observable value, of this window or an older one, and its standard error; NaN
+  /// without one. Main window only.
   std::vector<double> last_value, last_std_error;
   std::vector<Time> last_end;
   std::vector<BoxplotStatistics> boxplot;
-  /// What the normal equations say before the gate, SI; for study, never published.
+  /// The solution of the normal equations before the gate, SI. For studies; never published.
   std::vector<double> solution;
 
   template <typename Archive>
@@ -82,5 +85,45 @@ struct WindowEstimate {
       solution);
   }
 };
+
+/// Tells from the misfit if a parameter's absolute value can be trusted.
+enum class FitWord {
+  unknown,       ///< no window has shown the parameter yet
+  fits,          ///< value and error can be trusted
+  only_changes,  ///< the value may be off by far more than its error; its changes can be trusted
+  does_not_fit   ///< not even changes can be trusted
+};
+
+/// How well the model describes the measurement. A parameter's errors are relative, one standard
+/// deviation. They are constant while the building does not change, so they are not part of a
+/// change. They remain valid while no window shows the parameter (docs/equations.md, errors of the
+/// model).
+struct ModelFit {
+  static constexpr double kOnlyChanges = 0.15, kNothing = 0.3;  ///< misfits above which
+
+  explicit ModelFit(std::size_t parameters = 0);
+
+  Time start{}, end{};         ///< of the newest window
+  std::int64_t sequence = -1;  ///< increases by 1 per fit
+  /// By parameter, table order; NaN until a window shows it. Rms of what the equations leave beyond
+  /// sensor noise, over the rms of the stiffness forces.
+  std::vector<double> misfit;
+  std::vector<double> design_error;  ///< from tolerances of masses and of story shares
+  std::vector<double> misfit_error;  ///< error that the misfit may hide
+  std::vector<double> corner_error;  ///< spread over filter corners, beyond noise
+  std::vector<double> error;         ///< all of these; at least 1 if the model does not fit
+  std::vector<FitWord> word;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(start, end);
+    a.within(sequence, -1, a.kMaxCount);
+    a(misfit, design_error, misfit_error, corner_error, error);
+    a.each_within(word, 0, static_cast<double>(FitWord::does_not_fit));
+  }
+};
+
+/// Returns the word for a misfit by the thresholds above; unknown for NaN.
+FitWord fit_word(double misfit);
 
 }  // namespace framewatch::estimator

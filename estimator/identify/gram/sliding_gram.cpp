@@ -101,7 +101,7 @@ void SlidingGram::count_instants(std::int64_t first, std::int64_t last,
 WindowParts SlidingGram::window() {
   const std::int64_t block = (pushed_ - 1) / block_rows_;
   const auto into_block = static_cast<int>((pushed_ - 1) % block_rows_) + 1;
-  // The oldest block leaves row by row: its count is reduced in proportion.
+  // The oldest block leaves row by row, so its count is reduced in proportion.
   const int* newest = counts(block);
   const int* oldest = block >= blocks_ ? counts(block - blocks_) : nullptr;
   for (std::size_t f = 0; f < instants_.size(); ++f)
@@ -129,9 +129,9 @@ void SlidingGram::push(const RowFilter& entering) {
                               shape.stride);
     if (entering.count(f) > 0) ++count[f];
   }
-  // slot(j) holds what this block needs at row j and then receives what the next block needs at
-  // row block_rows - j, so one set of slots serves, run through in alternating directions.
-  // In the first block after a reset no rows leave, and the slots are stale.
+  // slot(j) holds what this block needs at row j, then receives what the next block needs at row
+  // block_rows - j. So one set of slots is enough, used in alternating directions. In the first
+  // block after a reset no rows leave, and the slots are stale.
   oldest_ = j < block_rows_ && pushed_ >= block_rows_ ? suffix(forward_ ? j : block_rows_ - j)
                                                       : zero_.data();
   ++pushed_;
@@ -176,7 +176,7 @@ void SlidingGram::add_slices(int j) {
   const std::int64_t block = (pushed_ - 1) / block_rows_;
   add_slice(block - (blocks_ - 2), block, j, block_rows_, next_middle_);
   for (Span& span : spans_) {
-    // Blocks that close meanwhile are added as they do.
+    // Blocks that close meanwhile are added when they close.
     const auto since = static_cast<int>(block % span.every);
     const std::int64_t start = block - since;
     add_slice(start - (span.blocks - span.every), start, since * block_rows_ + j,

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/regressors/row_filter.h"
+#include "estimator/identify/regressors/row_tuning.h"
 
 namespace framewatch::estimator {
 
-/// Where the packed Gram matrix of each floor lies in one flat array.
+/// The place of each floor's packed Gram matrix in one flat array.
 struct GramShape {
   explicit GramShape(const FloorLayout& layout);
   struct Floor {
@@ -21,28 +21,27 @@ struct GramShape {
   std::size_t size = 0;
 };
 
-/// A window's sum of H^T H in three parts that are to be added.
+/// The sum of H^T H of a window in three parts, which must be added.
 struct WindowParts {
   const GramShape* shape;
   const double* newest;
   const double* middle;
   const double* oldest;
   int rows;                          ///< instants
-  const std::vector<int>* instants;  ///< per floor: those in which it had rows
+  const std::vector<int>* instants;  ///< by floor: instants in which it had rows
 };
 
 /// The Gram matrix of the sliding window, floor by floor: the sum of H^T H over the rows [h, z] of
-/// the regression, kept up recursively as rows enter and leave, without a single subtraction: sums
-/// of whole blocks, of the block being filled, and prepared sums of what remains of the oldest
-/// block. Rounding errors of a strong motion therefore leave with its rows. docs/equations.md,
-/// block sums.
+/// the regression. It is updated recursively without any subtraction, from sums of whole blocks, of
+/// the block being filled, and of what remains of the oldest block. So the rounding errors of a
+/// strong motion leave with its rows. docs/equations.md, block sums.
 ///
-/// In block b, row j (1-based): window = suffix of block b-blocks (rows j+1..) + blocks between +
-/// rows 1..j of block b. The suffixes are built backwards, one row per instant, during block b-1,
-/// from rows that a second, delayed regressor filter formed during block b-2.
+/// In block b, after row j (1-based), the window is the suffix of block b-blocks (rows j+1..), the
+/// blocks between, and rows 1..j of block b. The suffixes are built backwards during block b-1, one
+/// row per instant, from rows that a second, delayed regressor filter formed during block b-2.
 ///
-/// Spans are further windows of whole blocks, summed from the same blocks a fifth of their length
-/// apart, at most once per block.
+/// Spans are further windows of whole blocks, summed from the same blocks. Their windows end a
+/// fifth of their length apart, and at most once per block.
 class SlidingGram {
  public:
   /// spans: their lengths in blocks.
@@ -50,55 +49,59 @@ class SlidingGram {
               const std::vector<int>& spans = {});
 
   void reset();
-  /// Instants by which the delayed regressor filter lags behind the first.
+  /// Returns the number of instants by which the delayed regressor filter lags.
   int lag() const { return (blocks_ - 2) * block_rows_; }
 
-  /// Adds one instant; the window's sum is then that of window().
+  /// Adds one instant. window() then returns the sum of the window that ends with it.
   void push(const RowFilter& entering);
-  /// Prepares the next instant, once the sum has been used. delayed: the delayed filter at the
-  /// instant lag() before the one pushed, or null while there is none. True when a block closed.
+  /// Prepares the next instant, after the sum has been used. delayed: the delayed filter at the
+  /// instant lag() before the pushed one, or nullptr before the first such instant. Returns true if
+  /// a block closed.
   bool maintain(const RowFilter* delayed);
 
   bool full() const { return pushed_ >= static_cast<std::int64_t>(blocks_) * block_rows_; }
-  /// After push(): maintain() will close a block.
+  /// Returns true after push() if maintain() will close a block.
   bool block_full() const { return pushed_ % block_rows_ == 0; }
   int window_rows() const { return blocks_ * block_rows_; }
-  /// Instants in the window so far.
+  /// Returns the number of instants in the window so far.
   int rows() const;
 
   const GramShape& shape() const { return shape_; }
-  /// Valid from push() to maintain().
+  /// Returns the sum of the window. Valid from push() to maintain().
   WindowParts window();
-  /// The block that maintain() closed is the last of a whole span.
+  /// Returns true if the block that maintain() closed is the last one of a span.
   bool span_full(int i) const {
     const Span& span = spans_[static_cast<std::size_t>(i)];
     const std::int64_t closed = pushed_ / block_rows_;
     return closed >= span.blocks && closed % span.every == 0;
   }
-  /// Valid from the maintain() that closed its last block to the one that closes the next.
+  /// Returns the sum of span i. Valid from the maintain() that closed its last block to the one
+  /// that closes the next.
   WindowParts span(int i);
-  /// Instants of the longest window.
+  /// Returns the number of instants in the longest window.
   int longest_rows() const { return held_blocks_ * block_rows_; }
   int spans() const { return static_cast<int>(spans_.size()); }
   int blocks() const { return blocks_; }
   int block_rows() const { return block_rows_; }
-  /// Blocks completed since the start.
+  /// Returns the number of blocks completed since the start.
   std::int64_t closed() const { return pushed_ / block_rows_; }
-  /// Completed block, age 0 = the newest; valid after maintain(); null: before the start.
+  /// Returns a completed block, age 0 is the newest, or nullptr before the start. Call it after
+  /// maintain().
   const double* block(int age) const;
-  /// Whether a floor has rows in that block.
+  /// Returns true if a floor has rows in that block.
   bool holds(int age, int floor) const {
     const std::int64_t block = closed() - 1 - age;
     return block >= 0 &&
            counts_[static_cast<std::size_t>(block % (held_blocks_ + 1) * floors_ + floor)] > 0;
   }
 
-  /// Whether the newest completed block can be sums of squares of rows; after maintain().
+  /// Returns true if the newest completed block can be sums of squares of rows. Call it after
+  /// maintain().
   bool sane() const;
-  /// Per floor: instants of the newest completed block in which it had rows.
+  /// Returns by floor the instants of the newest completed block in which it had rows.
   const int* newest_instants() { return counts(pushed_ / block_rows_ - 1); }
 
-  /// A completed block as a number, -1 for none, and back.
+  /// Convert a completed block to a number, -1 for nullptr, and back.
   std::int64_t number_of(const double* block) const {
     return block == nullptr ? -1 : (block - blocks_ring_.data()) / std::ptrdiff_t(shape_.size);
   }
@@ -123,7 +126,7 @@ class SlidingGram {
   void build_suffix(int j);
   void store_delayed(const RowFilter& delayed, int j);
   void count_instants(std::int64_t first, std::int64_t last, std::vector<int>& instants);
-  /// Adds the part-th of `parts` slices of the completed blocks first..last - 1 to a sum.
+  /// Adds one of `parts` slices of the completed blocks first..last - 1 to a sum.
   void add_slice(std::int64_t first, std::int64_t last, int part, int parts,
                  std::vector<double>& sum);
   void add_slices(int j);
@@ -135,7 +138,7 @@ class SlidingGram {
   GramShape shape_;
   int floors_, most_rows_;
   int blocks_, block_rows_;
-  int held_blocks_;  ///< of the longest window
+  int held_blocks_;  ///< blocks in the longest window
   std::int64_t pushed_ = 0;
   std::vector<double> current_, middle_, next_middle_, zero_;
   struct Span {
@@ -152,13 +155,13 @@ class SlidingGram {
   std::vector<double> suffixes_;         ///< (block_rows - 1) x state
   std::vector<double> stored_rows_;      ///< block_rows x rows of one instant
   std::vector<int> stored_counts_;       ///< block_rows x floors
-  std::vector<std::size_t> row_offset_;  ///< of a floor in one instant's rows
+  std::vector<std::size_t> row_offset_;  ///< where a floor begins in the rows of one instant
   std::size_t instant_rows_ = 0;
   bool forward_ = true;  ///< direction in which this block uses the slots
   const double* oldest_ = nullptr;
   std::vector<int> instants_;
-  std::vector<int> middle_instants_;  ///< of the main window's completed blocks
-  std::vector<int> counts_;  ///< (held blocks + 1) x floors, the current block's among them
+  std::vector<int> middle_instants_;  ///< instants of the main window's completed blocks
+  std::vector<int> counts_;           ///< (held blocks + 1) x floors, including the current block
 };
 
 }  // namespace framewatch::estimator

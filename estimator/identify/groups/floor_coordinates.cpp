@@ -11,7 +11,7 @@
 namespace framewatch::estimator {
 namespace {
 
-/// A reading is independent of others when so much of it, relative, is not a sum of theirs.
+/// A reading is independent if at least this relative share of it is not a sum of other readings.
 constexpr double kIndependent = 1e-3;
 
 std::vector<int> axes_at(const std::vector<SensorAxis>& axes,
@@ -23,7 +23,7 @@ std::vector<int> axes_at(const std::vector<SensorAxis>& axes,
   return at;
 }
 
-/// Rows of `seen` none of which is a sum of others, in their order.
+/// Returns the rows of `seen` that are linearly independent, in their order.
 std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& seen) {
   std::vector<Eigen::Index> rows;
   Eigen::MatrixXd basis(seen.cols(), 0);
@@ -38,7 +38,7 @@ std::vector<Eigen::Index> independent_rows(const Eigen::MatrixXd& seen) {
   return rows;
 }
 
-/// Least-squares weights of the axes: coordinates x all axes. seen: axes at the place x
+/// Returns the least-squares weights of the axes, coordinates x all axes. seen: axes at the place x
 /// coordinates.
 Eigen::MatrixXd weights(const Eigen::MatrixXd& seen, const std::vector<int>& at,
                         std::size_t all_axes) {
@@ -50,7 +50,8 @@ Eigen::MatrixXd weights(const Eigen::MatrixXd& seen, const std::vector<int>& at,
   return out;
 }
 
-/// Motion of the frames for every independent motion of the floor, and its mass matrix's diagonal.
+/// Returns the motion of the frames for every independent motion of the floor, with a diagonal mass
+/// matrix.
 Eigen::MatrixXd own_motions(const Structure& s, int story) {
   if (s.floor == FloorModel::flexible) return Eigen::MatrixXd::Identity(s.frames(), s.frames());
   const Eigen::MatrixXd all = floor_constraint(s).middleRows(s.dof(story, 0), s.frames());
@@ -107,7 +108,8 @@ std::array<Eigen::RowVectorXd, 2> base_rotations(const std::vector<SensorAxis>& 
     if (axes[a].vertical && axes[a].plan && present[a] != 0)
       at.push_back(static_cast<Eigen::Index>(a));
   const auto count = static_cast<Eigen::Index>(at.size());
-  // What a unit rotation lifts each axis by, less their mean: the base also moves up as a whole.
+  // The lift of each axis by a unit rotation, minus the mean lift, because the base also moves up
+  // as a whole.
   Eigen::MatrixXd lifted(count, 2);
   for (Eigen::Index i = 0; i < count; ++i) {
     const PlanPlace& place = *axes[static_cast<std::size_t>(at[static_cast<std::size_t>(i)])].plan;
@@ -152,7 +154,8 @@ FloorCoordinates base_coordinates(const Structure& s, const std::vector<SensorAx
   }
   Eigen::MatrixXd frames(s.frames(), 3);
   for (int f = 0; f < s.frames(); ++f) frames.row(f) = of_frame(f);
-  // A translation that nothing shows is none; a rotation counts where it is told from both.
+  // A translation that no axis shows is taken as zero. A rotation counts if it is independent of
+  // both translations.
   std::vector<Eigen::Index> shown;
   for (const Eigen::Index c : {0, 1})
     if ((c == 0 ? s.n() : s.m()) > 0 && at.size() > 0 &&

@@ -11,27 +11,29 @@
 
 namespace framewatch::estimator {
 
-/// A floor's motion in coordinates of which the first are measured. Where the axes show all of it,
-/// these are its own: the frames' of a flexible floor, the rigid motions of a rigid one. Else they
-/// are what independent axes read, and the others carry no mass in common with them.
+/// The motion of a floor in coordinates of which the first are measured. If the axes show the whole
+/// motion, these are the floor's natural coordinates: its frames on a flexible floor, its rigid
+/// motions on a rigid one. Otherwise they are the readings of independent axes, and the other
+/// coordinates share no mass with them.
 struct FloorCoordinates {
-  Eigen::MatrixXd frames;  ///< frames x coordinates: the frames' motion
+  Eigen::MatrixXd frames;  ///< motion of the frames, frames x coordinates
   int measured = 0;
   Eigen::MatrixXd from_axes;  ///< measured x all axes
 };
 
-/// story: 1..N. present: flags of the axes.
+/// Returns the coordinates of a floor. story: 1..N. present: flags of the axes.
 FloorCoordinates floor_coordinates(const Structure& structure, const std::vector<SensorAxis>& axes,
                                    const std::vector<std::uint8_t>& present, int story);
 
-/// The base as a rigid body, as far as the axes show it: translations, rotation about the vertical.
-/// All of these are measured; what no axis shows is taken as none.
+/// Returns the coordinates of the base as a rigid body: translations and rotation about the
+/// vertical. All of them count as measured; a motion that no axis shows is taken as zero.
 FloorCoordinates base_coordinates(const Structure& structure, const std::vector<SensorAxis>& axes,
                                   const std::vector<std::uint8_t>& present);
 
-/// Rotation of the base in the vertical planes along x and along y, rad per m of what its vertical
-/// axes read, from the plane through them: rows over all axes, empty where they do not show it. A
-/// rotation r moves a floor at the height h above the base by h r toward +x, +y.
+/// Returns the rotations of the base in the vertical planes along x and along y, rad per m of the
+/// readings of its vertical axes, from the plane through them. Each row covers all axes and is
+/// empty if they do not show the rotation. A rotation r moves a floor at height h above the base by
+/// h r toward +x or +y.
 std::array<Eigen::RowVectorXd, 2> base_rotations(const std::vector<SensorAxis>& axes,
                                                  const std::vector<std::uint8_t>& present);
 

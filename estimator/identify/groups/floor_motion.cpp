@@ -9,7 +9,7 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kForgottenStart = 4.6;  // to a hundredth
+constexpr double kForgottenStart = 4.6;  // decay to a hundredth
 
 using Matrix = Eigen::Map<const Eigen::MatrixXd>;
 
@@ -74,7 +74,7 @@ const Eigen::VectorXd& FloorMotion::push(const SampleSet& set) {
     const InnerChain& chain = equations_.chains[i];
     Inner& inner = inner_[i];
     const Eigen::Index m = chain.modes;
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(m);  // by the ends' accelerations
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(m);  // column: acceleration of one end
     for (std::size_t e = 0; e < chain.ends.size(); ++e)
       force += Eigen::Map<const Eigen::VectorXd>(
                    &chain.from_second[e * static_cast<std::size_t>(m)], m) *

@@ -13,23 +13,23 @@
 
 namespace framewatch::estimator {
 
-/// The motion of every frame on every floor, of a building with sensors on some: inner floors are
-/// simulated from the measured ones above and below them, as in the estimation (virtual sensors).
-/// Damping between the ends and inner floors that is not proportional to stiffness is left out of
-/// the modes.
+/// The motion of every frame on every floor of a building with sensors on some floors. Inner floors
+/// are simulated from the measured ones above and below them, as in the estimation (virtual
+/// sensors). Between the ends and inner floors, the modes leave out damping that is not
+/// proportional to stiffness.
 class FloorMotion {
  public:
   explicit FloorMotion(const PipelineConfig& config);
 
-  /// theta: the identified parameters, order of config.parameters(), SI. present: axes that are
-  /// used. Begins anew. Not bounded in time, and allocates.
+  /// Starts anew with identified parameters. theta: order of config.parameters(), SI. present:
+  /// flags of the axes in use. Takes unbounded time and allocates.
   void tune(const Eigen::VectorXd& theta, const std::vector<std::uint8_t>& present);
 
-  /// One calibrated instant. Absolute accelerations of the frames at the base, then at every floor
-  /// (ReducedBuilding::frames), m/s^2; NaN while an axis that is used has no value.
+  /// Takes one calibrated instant. Returns the absolute accelerations of the frames at the base,
+  /// then at every floor (ReducedBuilding::frames), m/s^2; NaN while an axis in use has no value.
   const Eigen::VectorXd& push(const SampleSet& set);
 
-  /// Instants until the start is forgotten.
+  /// Returns the number of instants until the start is forgotten.
   int settle_rows() const { return settle_rows_; }
   const Eigen::VectorXd& theta() const { return theta_; }
   const std::vector<std::uint8_t>& present() const { return present_; }

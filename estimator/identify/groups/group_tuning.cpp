@@ -3,22 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/identify/groups/axis_motion.h"
-#include "estimator/motion/oscillator_section.h"
+#include "estimator/identify/elements/deformations.h"
+#include "estimator/motion/derivative_triple.h"
 #include "estimator/numeric/kernels.h"
 
 namespace framewatch::estimator {
 namespace {
 
-/// The derivative filters are accurate up to this share of the sampling rate: no corner is higher.
+/// Highest corner as a share of the sampling rate: the derivative filters are accurate up to there.
 constexpr double kHighestCorner = 0.2;
-/// Of a floor's frequency with its neighbours held, measured (docs/partial.md): of shear buildings,
-/// and of those that bend.
+/// Corner over a floor's frequency with its neighbors held, for shear buildings and for buildings
+/// that bend. Found by measurement (docs/partial.md).
 constexpr double kShearCorner = 0.7, kBendingCorner = 0.85;
-constexpr double kDecay = 3;        // periods of the high-pass after which it has forgotten
-constexpr double kForgotten = 4.6;  // of inner modes: to a hundredth
-constexpr int kImpulseRows = 128;   // instants of an impulse that are pushed at once
-/// A change of the parameters by so much is as bad as a tenth of a filter's corner.
+constexpr double kDecay = 3;        // periods of the high-pass in which it decays
+constexpr double kForgotten = 4.6;  // decay of inner modes to a hundredth
+constexpr int kImpulseRows = 128;   // instants of an impulse pushed in one step
+/// Weights of parameter changes. A change of this size is as bad as a filter's corner that is off
+/// by a tenth.
 constexpr double kStiffnessWeight = 2, kDampingWeight = 1;
 
 std::size_t count_of(int count) {
@@ -120,7 +121,7 @@ int GroupTuning::parts_per_axis() const {
 }
 
 int GroupTuning::parts() const {
-  if (tuned_parts_ == 0) return 2;  // at least: the equations say how many
+  if (tuned_parts_ == 0) return 2;  // at least; the equations determine the number
   return 2 + static_cast<int>(config_->axes.size()) * parts_per_axis();
 }
 
@@ -132,8 +133,8 @@ void GroupTuning::tune(int part) {
   push_impulse((part - 1) / parts_per_axis(), (part - 1) % parts_per_axis());
 }
 
-/// Groups in series that became one have its flexibility, and shares w of it that are as well known
-/// as their own stiffnesses e were: the error of one is (1 - w) e with the others' w e.
+/// Groups in series that merged have the flexibility of their sum. Their shares w of it are as well
+/// known as their stiffnesses e were: the error of one is (1 - w) e together with the others' w e.
 std::vector<double> GroupTuning::share_error() const {
   const std::vector<int>& first = building_.same_as;
   std::vector<double> flexibility(first.size(), 0.0), square(first.size(), 0.0), out(first.size());
@@ -146,7 +147,7 @@ std::vector<double> GroupTuning::share_error() const {
   for (std::size_t p = 0; p < first.size(); ++p) {
     const double w = share(p) / flexibility[count_of(first[p])], e = ratios_.std_error[p];
     out[p] = std::sqrt(std::max(square[count_of(first[p])] + (1 - 2 * w) * e * e, 0.0));
-    if (w == 1) out[p] = 0;  // it is alone
+    if (w == 1) out[p] = 0;  // the group is alone
   }
   return out;
 }
@@ -164,7 +165,7 @@ void GroupTuning::form() {
   step_.assign(rows_.beta.size(), 0.0);
 }
 
-/// Adds what `part` of the impulse of an axis makes of the rows' products.
+/// Adds the products of the rows for `part` of the impulse of an axis.
 void GroupTuning::push_impulse(int axis, int part) {
   if (rows_.rows == 0 || present_[count_of(axis)] == 0) return;
   if (part == 0) chain_.start(equations_, table_.size());
@@ -198,7 +199,7 @@ void GroupTuning::finish_noise() {
   for (int r = 0; r < rows_.rows; ++r) {
     const double* moments = &moments_[count_of(r * stride) * count_of(stride)];
     const auto at = [&](int p, int q) { return moments[count_of(p * stride + q)]; };
-    double variance = at(unknowns, unknowns);  // of z - sum h
+    double variance = at(unknowns, unknowns);  // variance of z - sum h
     for (int p = 0; p < unknowns; ++p) {
       variance -= 2 * at(p, unknowns);
       for (int q = 0; q < unknowns; ++q) variance += at(p, q);
@@ -270,7 +271,7 @@ void GroupFilter::start() {
   const FloorRows& rows = tuning_->rows(0);
   past_.end();
   starting_ = rows.rows > 0 && settle_ == 0;
-  if (!starting_) return;  // what settles owes nothing
+  if (!starting_) return;  // settled filters carry no trace of the past
   past_.begin(rows.rows);
   for (int r = 0; r < rows.rows; ++r) {
     past_.add(r, tuning_->high_pass_poles());

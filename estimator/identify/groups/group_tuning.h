@@ -8,8 +8,7 @@
 #include <Eigen/Core>
 
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/elements/perturbed_designs.h"
-#include "estimator/identify/groups/group_chain.h"
+#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/groups/group_equations.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/row_tuning.h"
@@ -20,17 +19,17 @@
 
 namespace framewatch::estimator {
 
-/// The rows' oscillator sections; every weight is 1.
+/// Returns the oscillator sections of the rows, with every weight 1.
 FloorRows group_rows(const EstimatorOptions& options, const GroupDesign& design,
                      const GroupEquations& equations, int unknowns);
 
-/// Rows of groups of stories between measured floors. Part 0 of tuning makes the equations, the
-/// others push a unit impulse of each axis through them: what sensor noise adds to the sums, (14)
-/// to (16) without algebra.
+/// Forms rows of groups of stories between measured floors. Part 0 of the tuning forms the
+/// equations. The other parts push a unit impulse of each axis through them, which gives the noise
+/// in the sums, (14) to (16), without algebra.
 class GroupTuning : public RowTuning {
  public:
-  /// config: of groups; must outlive the object, as options (its own, or with other corners) and
-  /// layout. triple: held_triple. Only part 0 is tuned yet.
+  /// Tunes part 0 only. config: of a building in groups. `config`, `options` and `layout` must
+  /// outlive the object; `options` may be config's or have other corners. triple: of held_triple().
   GroupTuning(const PipelineConfig& config, const EstimatorOptions& options,
               const ParameterTable& table, const FloorLayout& layout, const GroupDesign& design,
               const DerivativeTriple& triple, const HighPass& high_pass);
@@ -43,7 +42,7 @@ class GroupTuning : public RowTuning {
   const Eigen::VectorXd& theta0() const override { return theta0_; }
   const std::vector<double>& noise_density() const override { return noise_density_; }
   int settle_rows(int least) const override;
-  /// How far theta is from theta0, where rows are a linearisation.
+  /// Returns how far theta is from theta0, where the rows are linearized.
   double detuning(int floor, const Eigen::VectorXd& theta) override;
   const std::vector<std::uint8_t>& axes() const override { return present_; }
   void set_axes(const std::vector<std::uint8_t>& present, const Known& ratios) override;
@@ -53,7 +52,7 @@ class GroupTuning : public RowTuning {
   void save(StateWriter& state) override { members(state); }
   void load(StateReader& state) override { members(state); }
 
-  /// No mode between measured floors is waited for longer.
+  /// Longest time that is waited for a mode between measured floors.
   static constexpr double kLongestSettle_s = 20;
 
   const FloorLayout& layout() const { return *layout_; }
@@ -74,7 +73,7 @@ class GroupTuning : public RowTuning {
     a.within(tuned_parts_, 0, a.kMaxCount);
     if constexpr (Archive::kReading) restore();
   }
-  /// Everything that follows from the parameters, as far as it had been tuned.
+  /// Recomputes everything that follows from the parameters, up to the tuned parts.
   void restore();
   void form();
   std::vector<double> share_error() const;
@@ -89,26 +88,26 @@ class GroupTuning : public RowTuning {
   PolePair high_pass_poles_;
   ParameterTable table_;
   const GroupDesign configured_;
-  GroupDesign design_;  ///< as configured within a group, between groups by ratios_
+  GroupDesign design_;  ///< as configured within a group; ratios_ scale the groups
   Known ratios_;
   Eigen::VectorXd designed_, theta0_;
   std::vector<double> noise_density_;
   std::vector<std::uint8_t> present_;
   PerturbedDesigns perturbed_;
-  std::vector<std::vector<double>> impulse_;  ///< of every AxisMotion::Signal
+  std::vector<std::vector<double>> impulse_;  ///< impulse response of every AxisMotion::Signal
   ReducedBuilding building_;
   GroupEquations equations_;
   FloorRows rows_;
   int tuned_parts_ = 0;
 
-  // Of the noise that is being summed.
+  // State of the noise summation.
   GroupChain chain_;
   FloorRows plain_;              ///< rows_ with every weight 1
   std::vector<double> moments_;  ///< rows x front x front
   std::vector<double> motion_, step_;
 };
 
-/// The rows that enter, or those that leave.
+/// Forms the entering rows, or the leaving ones.
 class GroupFilter : public RowFilter {
  public:
   GroupFilter(GroupTuning& tuning, int settle);
@@ -140,7 +139,7 @@ class GroupFilter : public RowFilter {
   int settle_, settling_ = 0;
   GroupChain chain_;
   UnknownPast past_;
-  bool starting_ = false;  ///< too few rows since the start to know the past from
+  bool starting_ = false;  ///< too few rows since the start to determine the past
   std::vector<double> motion_;
 };
 

@@ -21,9 +21,10 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 constexpr double kHighest_hz = 25, kGroundHighPass_hz = 0.25;
-/// Distance of frequencies: a share of the frequency, as modes are as narrow, within bounds.
+/// Step between frequencies: a share of the frequency, because modes are that narrow, within
+/// bounds.
 constexpr double kStepRatio = 0.02, kMinStep_hz = 0.02, kMaxStep_hz = 0.3;
-constexpr double kNotLinear = 0.15;  // of the size of a loss of 20 to 40 % of a story
+constexpr double kNotLinear = 0.15;  // share of the effect of losing 20 to 40 % of a story
 constexpr double kDetected = 4;      // standard errors of a difference
 
 struct Frequency {
@@ -101,7 +102,7 @@ class Prediction {
   }
 
  private:
-  /// Stories' stiffness and floors' masses as sums of w w'.
+  /// Collects the stories' stiffness and the floors' masses as sums of w w'.
   void collect(const ReducedBuilding& stories) {
     const Structure& s = config_.structure;
     const ParameterTable all(s);
@@ -143,10 +144,10 @@ class Prediction {
     for (std::size_t i = 0; i < all.size(); ++i) add(all[i], at_all[i], noise);
   }
 
-  /// Rows filtered and projected, of the residual: rows x measured.
+  /// Motion and residual at one frequency.
   struct AtFrequency {
     MatrixXcd motion;    ///< all coordinates by the measured ones
-    MatrixXcd residual;  ///< rows x measured
+    MatrixXcd residual;  ///< filtered and projected rows x measured
     Eigen::VectorXcd filter;
   };
 
@@ -183,7 +184,7 @@ class Prediction {
   }
   double weight(Index r) const { return weights_.size() == 0 ? 1 : weights_[r]; }
 
-  /// Rows of equal noise, from now on and in what there is.
+  /// Scales rows to equal noise: those in `at_all` and those computed later.
   void weigh(const std::vector<Frequency>& frequencies, std::vector<AtFrequency>& at_all,
              const MatrixXd& noise) {
     Eigen::VectorXd variance = Eigen::VectorXd::Zero(building_.rows());
@@ -200,7 +201,7 @@ class Prediction {
     const double of_ground = frequency.step_hz * frequency.ground;
     const Complex s(0, 2 * M_PI * frequency.hz);
     const Index measured = building_.measured, inputs = building_.inputs;
-    // The building's own motion under the base's.
+    // The building's relative motion under the motion of the base.
     const MatrixXcd moved = -ComplexLu(MatrixXcd(f.residual.rightCols(measured - inputs)))
                                  .solve(MatrixXcd(f.residual.leftCols(inputs)));
     MatrixXcd motion(measured, inputs);
@@ -208,8 +209,7 @@ class Prediction {
     const Index p = table_.size(), dofs = springs_.cols();
     const MatrixXcd by_springs = rows(f, f.motion.transpose() * springs_);
     const MatrixXcd by_masses = rows(f, f.motion.transpose() * masses_);
-    // Base directions are independent of each other, each with this density; rocking is not
-    // foreseen.
+    // Base directions are independent and each has this density. Rocking is not included.
     for (Index input = 0; input < inputs - building_.rotations; ++input) {
       const Eigen::VectorXcd all = f.motion * motion.col(input);
       const Eigen::VectorXcd stretched = springs_.transpose() * all;
@@ -237,7 +237,7 @@ class Prediction {
     }
   }
 
-  /// The frames of a group's stories, and the share of each in the group's flexibility.
+  /// The frames of a group's stories and the share of each story in the group's flexibility.
   struct Shares {
     std::vector<Index> dof;
     std::vector<double> share;
@@ -272,7 +272,7 @@ class Prediction {
         squares += std::pow(moved / shares.share[i] - 1, 2) / count;
         own += std::abs(moved) / count;
       }
-      // What is linear here is not where a story loses much of its stiffness.
+      // The linear effect does not hold for a large loss in a story.
       out.change_error[g] = std::hypot(kNotLinear, std::sqrt(squares));
       for (std::size_t q = 0; q < n; ++q)
         for (const Index d : shares.dof)
@@ -282,7 +282,8 @@ class Prediction {
     }
   }
 
-  /// A story's error less what the whole group has in common, which is the group's factor.
+  /// The error of each story minus the part that the whole group has in common, which is the
+  /// group's factor.
   void add_design_error(const MatrixXd& sensitivity, LayoutPrediction& out) const {
     const Structure& s = config_.structure;
     const Index p = table_.size();
@@ -310,7 +311,7 @@ class Prediction {
   FloorRows rows_;
   MatrixXd projection_;
   MatrixXd springs_, masses_;  ///< coordinates x frame stories, floors' frames
-  std::vector<int> of_group_;  ///< stiffness parameter of every frame story; -1: none
+  std::vector<int> of_group_;  ///< stiffness parameter of every frame story, or -1
   Eigen::VectorXd rate_;       ///< damping over stiffness of every frame story, s
   Eigen::VectorXd weights_;
   MatrixXd information_, scores_, mismatch_;

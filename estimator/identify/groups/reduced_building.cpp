@@ -7,16 +7,88 @@
 #include <utility>
 
 #include "estimator/identify/groups/floor_coordinates.h"
-#include "estimator/identify/groups/inner_modes.h"
+#include "estimator/numeric/eigenvalues.h"
+#include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/story_groups.h"
 
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kCoupled = 1e-9;  // of a mass matrix' diagonal
+/// A spring with at least one coordinate in an inner set.
+struct InnerSpring {
+  std::vector<std::pair<int, double>> deformation;  ///< coordinate of the set, coefficient
+  std::vector<std::pair<int, double>> ends;         ///< measured coordinate, coefficient
+  double stiffness;
+  bool hinge;  ///< rotational; its stiffness may differ much from the design
+};
 
-/// A frame story, floor panel or hinge: stiffness and damping along a deformation.
+/// Unmeasured coordinates that move together.
+struct InnerSet {
+  Eigen::MatrixXd mass;
+  std::vector<InnerSpring> springs;
+};
+
+/// Largest number of coordinates of a set that is not reduced.
+constexpr int kMaxInner = 40;
+
+constexpr int kShapes = 24;    // modes of a large set
+constexpr double kSpread = 3;  // factor by which the stiffness of hinges may be off
+constexpr double kIndependentShape = 1e-7;
+
+Eigen::MatrixXd shapes_of(const InnerSet& set, int measured, double hinge_factor) {
+  const Eigen::Index n = set.mass.rows();
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd coupling = Eigen::MatrixXd::Zero(n, measured);
+  for (const InnerSpring& s : set.springs) {
+    const double k = s.stiffness * (s.hinge ? hinge_factor : 1);
+    for (const auto& [i, b] : s.deformation) {
+      for (const auto& [j, d] : s.deformation) stiffness(i, j) += k * b * d;
+      for (const auto& [j, d] : s.ends) coupling(i, j) += k * b * d;
+    }
+  }
+  std::vector<Eigen::Index> moved;
+  for (Eigen::Index j = 0; j < measured; ++j)
+    if (!coupling.col(j).isZero(0)) moved.push_back(j);
+  const RealEigen modes = generalized_eigen(set.mass, stiffness);  // ascending 1 / w^2
+  const Eigen::Index kept = std::min<Eigen::Index>(kShapes, n);
+  Eigen::MatrixXd out(n, kept + static_cast<Eigen::Index>(moved.size()));
+  out.leftCols(kept) = modes.vectors.rightCols(kept);
+  Eigen::MatrixXd ends(n, static_cast<Eigen::Index>(moved.size()));
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    ends.col(static_cast<Eigen::Index>(i)) = coupling.col(moved[i]);
+  out.rightCols(ends.cols()) = Cholesky(stiffness).solve(ends);
+  for (Eigen::Index i = 0; i < out.cols(); ++i) out.col(i).normalize();
+  return out;
+}
+
+/// Returns orthonormal columns whose sums are the motions of the set. A small set keeps all its
+/// motions. A large set is described by its lowest modes with the ends held and the static shapes
+/// under motion of the ends, for hinges as designed, a third as stiff and three times as stiff.
+/// measured: number of measured coordinates.
+Eigen::MatrixXd inner_shapes(const InnerSet& set, int measured) {
+  const Eigen::Index n = set.mass.rows();
+  if (n <= kMaxInner) return Eigen::MatrixXd::Identity(n, n);
+  const bool hinges = std::any_of(set.springs.begin(), set.springs.end(),
+                                  [](const InnerSpring& s) { return s.hinge; });
+  Eigen::MatrixXd all = shapes_of(set, measured, 1);
+  for (const double factor : {1 / kSpread, kSpread}) {
+    if (!hinges) break;
+    const Eigen::MatrixXd more = shapes_of(set, measured, factor);
+    all.conservativeResize(Eigen::NoChange, all.cols() + more.cols());
+    all.rightCols(more.cols()) = more;
+  }
+  const SingularValues independent = singular_values(all);
+  Eigen::Index kept = 0;
+  while (kept < independent.values.size() &&
+         independent.values[kept] > kIndependentShape * independent.values[0])
+    ++kept;
+  return independent.left.leftCols(kept);
+}
+
+constexpr double kCoupled = 1e-9;  // share of a mass matrix' diagonal
+
+/// A frame story, floor panel or hinge with stiffness and damping along a deformation.
 struct Spring {
   std::vector<std::pair<int, double>> deformation;  ///< coordinate, coefficient
   double stiffness, damping;
@@ -24,13 +96,13 @@ struct Spring {
   bool hinge = false;
 };
 
-/// All coordinates: measured ones first.
+/// All coordinates, the measured ones first.
 struct Coordinates {
   std::vector<FloorCoordinates> floor;  ///< base first
-  std::vector<std::vector<int>> index;  ///< of every floor's coordinates
-  std::vector<int> forces;              ///< axes of the coordinates behind the base's
+  std::vector<std::vector<int>> index;  ///< coordinates of every floor
+  std::vector<int> forces;              ///< axes of the coordinates after the base's
   std::array<Eigen::RowVectorXd, 2> rotation_of_axes;
-  std::array<int, 2> rotation{-1, -1};  ///< coordinates behind the forces'; -1: not known
+  std::array<int, 2> rotation{-1, -1};  ///< coordinates after the forces; -1: not known
   int inputs = 0, measured = 0, total = 0;
 };
 
@@ -110,7 +182,7 @@ std::vector<Spring> springs(const Structure& s, const ParameterTable& table,
   return out;
 }
 
-/// Sets of inner coordinates that springs or masses connect, each ascending.
+/// Returns the sets of inner coordinates that springs or masses connect, each ascending.
 std::vector<std::vector<int>> connected(const std::vector<Spring>& springs,
                                         const Eigen::MatrixXd& mass, const Coordinates& c) {
   std::vector<int> root(static_cast<std::size_t>(c.total));
@@ -142,7 +214,7 @@ std::vector<std::vector<int>> connected(const std::vector<Spring>& springs,
   return out;
 }
 
-/// Forces work on what their places move by.
+/// Adds the forces, which do work on the motion of their places.
 void add_forces(const Structure& s, const std::vector<SensorAxis>& axes, const Coordinates& c,
                 Eigen::MatrixXd& mass) {
   for (std::size_t n = 0; n < c.forces.size(); ++n) {
@@ -176,7 +248,7 @@ Eigen::MatrixXd mass_of(const Structure& s, const std::vector<SensorAxis>& axes,
   return mass;
 }
 
-/// Motion of the frames at the base and at every floor by all coordinates.
+/// Returns the motion of the frames at the base and at every floor by all coordinates.
 Eigen::MatrixXd frames_of(const Structure& s, const Coordinates& c) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero((s.stories + 1) * s.frames(), c.total);
   for (std::size_t l = 0; l < c.floor.size(); ++l)
@@ -186,7 +258,8 @@ Eigen::MatrixXd frames_of(const Structure& s, const Coordinates& c) {
   return out;
 }
 
-/// Columns: all coordinates' motion for the measured ones and for those that describe inner sets.
+/// Motion of all coordinates (rows) by the measured ones and by those that describe inner sets
+/// (columns).
 struct Basis {
   Eigen::MatrixXd shapes;
   std::vector<int> sets;
@@ -233,7 +306,8 @@ Basis basis_of(const std::vector<Spring>& springs, const Eigen::MatrixXd& mass,
   return out;
 }
 
-/// By parameter, the first one of the group that it is part of while only these axes are there.
+/// Returns by parameter the first one of the group that it belongs to if only these axes are
+/// present.
 std::vector<int> first_of_group(const Structure& s, const std::vector<SensorAxis>& axes,
                                 const ParameterTable& table,
                                 const std::vector<std::uint8_t>& present) {

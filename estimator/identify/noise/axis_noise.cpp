@@ -7,7 +7,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kChanged = 2;
-constexpr double kMin = 1e-3;  // of the noisiest axis: nothing is noise-free
+constexpr double kMin = 1e-3;  // share of the noisiest axis: every axis has some noise
 
 }  // namespace
 

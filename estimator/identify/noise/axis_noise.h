@@ -7,7 +7,7 @@
 
 namespace framewatch::estimator {
 
-/// The noise density assumed of every axis: as configured, else as measured.
+/// The noise density of every axis: the configured one, otherwise the measured one.
 class AxisNoise {
  public:
   AxisNoise(const std::vector<SensorAxis>& axes, double rate_hz);
@@ -16,13 +16,13 @@ class AxisNoise {
     if (!configured_) meter_.push(accel);
   }
   void reset() { meter_.reset(); }
-  /// Of every axis.
+  /// Returns true if the noise of every axis is configured.
   bool configured() const { return configured_; }
-  /// m/s^2/sqrt(Hz) of every axis, into a vector of their number; false, and nothing written, while
-  /// one is not known.
+  /// Writes the density of every axis, m/s^2/sqrt(Hz), into `out`, which has one entry per axis.
+  /// Returns false and writes nothing while a density is unknown.
   bool densities(std::vector<double>& out) const;
-  /// Whether the ratios of the axes without configured noise have changed since `used` so much that
-  /// the rows should be weighted anew.
+  /// Returns true if the ratios of the axes without configured noise have changed so much since
+  /// `used` that the rows should be reweighted.
   bool differs(const std::vector<double>& now, const std::vector<double>& used) const;
 
   template <typename Archive>
@@ -31,7 +31,7 @@ class AxisNoise {
   }
 
  private:
-  std::vector<double> given_;  ///< 0 = not configured
+  std::vector<double> given_;  ///< 0: not configured
   bool configured_;
   NoiseMeter meter_;
 };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/identify/elements/perturbed_designs.h"
+#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/kernels.h"
 
 namespace framewatch::estimator {

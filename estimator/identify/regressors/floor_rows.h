@@ -6,50 +6,51 @@
 
 namespace framewatch::estimator {
 
-/// Share of the sensor noise in the normal matrix that the solver subtracts. Subtracting all of it
-/// would be unbiased, but the solution would diverge where there is little but noise. So this share
-/// is subtracted, and the right-hand side corrected such that the rest biases toward theta0 only.
-/// docs/equations.md, noise in the regressors.
+/// Share of the sensor noise in the normal matrix that the solver subtracts. To subtract all of it
+/// would be unbiased, but the solution would diverge where there is little signal. The right-hand
+/// side is corrected so that the remaining noise biases toward theta0 only. docs/equations.md,
+/// noise in the regressors.
 inline constexpr double kCompensatedShare = 0.8;
 
 struct FloorRows;
 
-/// The part of a floor's sensor noise per instant that a solver subtracts, packed like the sums:
-/// `share` of the normal matrix, and so much of the right-hand side that the rest biases toward
-/// theta0.
+/// Computes the part of a floor's sensor noise per instant that a solver subtracts, packed like the
+/// sums: `share` of the normal matrix, and the part of the right-hand side that lets the rest bias
+/// toward theta0.
 void pack_compensation(const FloorLayout& layout, int floor, const FloorRows& rows, double share,
                        std::vector<double>& out);
 
-/// Two poles of a filter: its natural responses follow s[t] = -a1 s[t-1] - a2 s[t-2].
+/// Two poles of a filter. Its natural responses follow s[t] = -a1 s[t-1] - a2 s[t-2].
 struct PolePair {
   double a1 = 0, a2 = 0;
 };
 
-/// One floor's projected equations: each row r is sum_f phi_rf (equation f), filtered by its
+/// The projected equations of one floor. Row r is sum_f phi_rf (equation f), filtered by its
 /// oscillator section and scaled by the root of its weight.
 struct FloorRows {
-  /// Whether all sizes are those of a floor of this layout; numbers from a file may be any.
+  /// Returns true if every size fits a floor of this layout. Sizes read from a file may have any
+  /// value.
   bool fits(const FloorLayout& layout, int floor) const;
 
   int rows = 0;
   std::vector<double> gain, a1, a2;  ///< OscillatorSection of every row
-  std::vector<double> frequency_hz;  ///< its corner
+  std::vector<double> frequency_hz;  ///< corner frequency of the section
   /// rows x padded(front): multiplies the filtered front signals [deformations..., response].
   std::vector<double> beta;
-  std::vector<double> response;  ///< rows x frames: -phi_rf, forms the response from m p''
-  /// What sensor noise adds per instant, for x = 1: to the normal matrix (unknowns x
-  /// unknowns), to the right-hand side, and to the energy of the response.
+  std::vector<double> response;  ///< rows x frames: -phi_rf, which forms the response from m p''
+  /// Energy that sensor noise adds per instant, for x = 1: to the normal matrix (unknowns x
+  /// unknowns), to the right-hand side, and to the response.
   std::vector<double> noise_energy;
-  std::vector<double> noise_diagonal;  ///< of noise_energy
+  std::vector<double> noise_diagonal;  ///< diagonal of noise_energy
   std::vector<double> noise_bias;      ///< noise_energy times PerturbedDesigns
   std::vector<double> noise_right;
   double noise_response = 0;
-  /// The part of these that the solver subtracts per instant, packed like the sums.
+  /// The part of the noise that the solver subtracts per instant, packed like the sums.
   std::vector<double> noise_compensation;
-  /// Of groups: by unknown the one whose solution it has. Empty: each its own.
+  /// For groups: the unknown whose solution each unknown takes. Empty: every unknown has its own.
   std::vector<int> same_as;
-  /// Of groups: by unknown, the relative standard error that its share of a group it is part of
-  /// adds.
+  /// For groups: the relative standard error that each unknown gets from its share of a merged
+  /// group.
   std::vector<double> share_error;
   double noise_residual = 0;  ///< expected weighted squared residual per instant
 

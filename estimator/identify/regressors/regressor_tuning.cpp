@@ -5,12 +5,14 @@
 #include <numeric>
 #include <utility>
 
+#include "estimator/numeric/kernels.h"
+
 namespace framewatch::estimator {
 namespace {
 
-/// The derivative triple is accurate up to this share of the sampling rate: no corner is higher.
+/// Highest corner as a share of the sampling rate: the derivative triple is accurate up to there.
 constexpr double kHighestCorner = 0.2;
-/// Periods of the high-pass after which its impulse response is forgotten.
+/// Periods of the high-pass in which its impulse response decays.
 constexpr double kDecay = 3;
 
 }  // namespace
@@ -98,7 +100,8 @@ void RegressorTuning::floor_stiffness(int floor, const Eigen::VectorXd& theta) {
     add(p, theta[layout_->parameter(floor, p)]);
 }
 
-/// Modes of the equations taken, in the first columns of modes_ and frequency_hz_; their number.
+/// Computes the modes of the present equations into the first columns of modes_ and frequency_hz_.
+/// Returns their number.
 int RegressorTuning::floor_modes(int floor, const Eigen::VectorXd& theta) {
   const int frames = layout_->frames();
   const auto count = static_cast<int>(equations_.size());
@@ -150,7 +153,7 @@ void RegressorTuning::weigh(int floor, int r, const OscillatorSection& section, 
   const FloorNoise& noise = noise_[static_cast<std::size_t>(floor)];
   const NoiseMoments moments = noise_filter_.through(section);
 
-  for (int p = 0; p < unknowns; ++p) {  // force of the element on the row, per unit deformation
+  for (int p = 0; p < unknowns; ++p) {  // force of the element on the row per unit deformation
     double projected = 0;
     for (int f = 0; f < frames; ++f) projected += layout_->coefficient(p, f) * phi[f];
     force_[p] = projected * (p < layout_->own() ? theta0_at(floor, p)
@@ -158,7 +161,7 @@ void RegressorTuning::weigh(int floor, int r, const OscillatorSection& section, 
   }
   for (int f = 0; f < frames; ++f) inertia_[f] = phi[f] * mass(floor, f);
   const Eigen::Index axes = noise.variance.size();
-  // How the noise of every axis enters the row through mass, stiffness and damping.
+  // The noise of each axis enters the row through mass, stiffness and damping.
   double variance = 0, response = 0;
   common_.setZero();
   for (Eigen::Index a = 0; a < axes; ++a) {
@@ -184,7 +187,7 @@ void RegressorTuning::weigh(int floor, int r, const OscillatorSection& section, 
     out.response[row * static_cast<std::size_t>(frames) + static_cast<std::size_t>(f)] = -phi[f];
   out.noise_response += root_weight * root_weight * moments.g22 * response;
   for (int p = 0; p < unknowns; ++p) {
-    // The response is -m p'': noise in p'' and p moves together, in p'' and p' it does not.
+    // The response is -m p''. Noise in p'' is correlated with noise in p, but not with noise in p'.
     const bool damping = noise.damping[static_cast<std::size_t>(p)];
     if (!damping)
       out.noise_right[static_cast<std::size_t>(p)] -=
@@ -267,6 +270,109 @@ double RegressorTuning::detuning(int floor, const Eigen::VectorXd& theta) {
   for (int r = 0; r < rows; ++r)
     worst = std::max(worst, std::abs(frequency_hz_[r] / now[static_cast<std::size_t>(r)] - 1));
   return worst;
+}
+
+namespace {
+
+constexpr int kShapes = 4;  // shapes of a row: two of the high-pass, two of its oscillator section
+
+}  // namespace
+
+RegressorFilter::RegressorFilter(RegressorTuning& tuning, const FloorLayout& layout, int settle)
+    : RowFilter(layout), tuning_(&tuning), layout_(&layout), settle_(settle) {
+  floor_.reserve(static_cast<std::size_t>(layout.floors()));
+  for (int floor = 0; floor < layout.floors(); ++floor) {
+    const int stride = padded(layout.front(floor));
+    const auto size = static_cast<std::size_t>(layout.frames() * stride);
+    floor_.push_back({nullptr, tuning.rows(floor), std::vector<double>(size),
+                      std::vector<double>(size), UnknownPast(stride, layout.frames(), kShapes)});
+  }
+  signal_.assign(static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1)), 0.0);
+  response_.assign(static_cast<std::size_t>(layout.frames()), 0.0);
+  changed_.reserve(static_cast<std::size_t>(layout.floors()));
+  known_.resize(static_cast<std::size_t>((layout.floors() + 1) * layout.frames()));
+  reset(settle);
+}
+
+void RegressorFilter::reset(int settle) {
+  settle_ = settle;
+  std::fill(known_.begin(), known_.end(), std::uint8_t{1});
+  for (int floor = 0; floor < layout_->floors(); ++floor) rebuild(floor);
+}
+
+void RegressorFilter::rebuild(int floor) {
+  Floor& f = floor_[static_cast<std::size_t>(floor)];
+  if (all_known_around(floor)) {
+    f.rows = &tuning_->rows(floor);
+  } else {
+    tuning_->rows(floor, known_, f.some_known);
+    f.rows = &f.some_known;
+  }
+  std::fill(f.s1.begin(), f.s1.end(), 0.0);
+  std::fill(f.s2.begin(), f.s2.end(), 0.0);
+  f.settling = settle_ + 1;
+  f.past.end();
+  // Settled filters carry no trace of the past.
+  f.starting = tuning_->removes_past() && settle_ == 0;
+  if (!f.starting) return;
+  f.past.begin(f.rows->rows);
+  for (int r = 0; r < f.rows->rows; ++r) {
+    const auto row = static_cast<std::size_t>(r);
+    f.past.add(r, tuning_->high_pass_poles());
+    f.past.add(r, {f.rows->a1[row], f.rows->a2[row]});
+  }
+}
+
+bool RegressorFilter::all_known_around(int floor) const {
+  const auto first = known_.begin() + floor * layout_->frames();
+  const int levels = layout_->next(floor) > 0 ? 3 : 2;
+  return std::all_of(first, first + levels * layout_->frames(), [](auto k) { return k != 0; });
+}
+
+bool RegressorFilter::same_surroundings(int floor, const std::vector<std::uint8_t>& known) const {
+  const auto first = known.begin() + floor * layout_->frames();
+  const int levels = layout_->next(floor) > 0 ? 3 : 2;
+  return std::equal(first, first + levels * layout_->frames(),
+                    known_.begin() + floor * layout_->frames());
+}
+
+void RegressorFilter::push(const DeformationSet& set) {
+  if (set.known != known_) {
+    changed_.clear();
+    for (int floor = 0; floor < layout_->floors(); ++floor)
+      if (!same_surroundings(floor, set.known)) changed_.push_back(floor);
+    known_ = set.known;
+    for (const int floor : changed_) rebuild(floor);
+  }
+  const int own = layout_->own();
+  const int frames = layout_->frames();
+  const int motion_stride = own + frames;
+  for (int floor = 0; floor < layout_->floors(); ++floor) {
+    Floor& f = floor_[static_cast<std::size_t>(floor)];
+    if (f.settling > 0) --f.settling;
+    const int next = layout_->next(floor);
+    const int stride = padded(layout_->front(floor));
+    const double* here = &set.values[static_cast<std::size_t>(floor * motion_stride)];
+    std::copy(here, here + own, signal_.begin());
+    if (next > 0)
+      std::copy(here + motion_stride, here + motion_stride + next, signal_.begin() + own);
+    std::fill(signal_.begin() + own + next, signal_.begin() + stride, 0.0);
+    for (int r = 0; r < f.rows->rows; ++r) {
+      const double* weight = &f.rows->response[static_cast<std::size_t>(r * frames)];
+      double response = 0;
+      for (int g = 0; g < frames; ++g) response += weight[g] * here[own + g];
+      response_[static_cast<std::size_t>(r)] = response;
+    }
+    kernels::in_use->filter_rows(signal_.data(), response_.data(), own + next, f.rows->gain.data(),
+                                 f.rows->a1.data(), f.rows->a2.data(), f.s1.data(), f.s2.data(),
+                                 f.rows->beta.data(), &rows_[offset(floor)], f.rows->rows, stride);
+    f.starting = !f.past.remove(&rows_[offset(floor)]);
+  }
+}
+
+/// Defined here, because the tuning must not depend on the filter, which depends on it.
+std::unique_ptr<RowFilter> RegressorTuning::make_filter(int settle) {
+  return std::make_unique<RegressorFilter>(*this, *layout_, settle);
 }
 
 }  // namespace framewatch::estimator

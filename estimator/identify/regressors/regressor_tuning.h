@@ -8,54 +8,52 @@
 
 #include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/elements/perturbed_designs.h"
+#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/noise/floor_noise.h"
-#include "estimator/identify/noise/noise_moments.h"
 #include "estimator/identify/regressors/floor_rows.h"
 #include "estimator/identify/regressors/row_tuning.h"
+#include "estimator/identify/regressors/unknown_past.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/drift_controlled_integrator.h"
-#include "estimator/motion/oscillator_section.h"
-#include "estimator/numeric/jacobi_eigen.h"
+#include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/kernels.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 
 namespace framewatch::estimator {
 
-/// How the rows of every floor are formed: projection, oscillator sections and weights for given
-/// parameters theta0, the design of the drawings at first, later what was identified.
-/// docs/equations.md, matched rows.
-/// Allocates when constructed, never after.
+/// Forms the rows of every floor: projection, oscillator sections and weights for given parameters
+/// theta0. At first theta0 is the design, later it is identified. docs/equations.md, matched rows.
+/// Allocates only in the constructor.
 class RegressorTuning : public RowTuning {
  public:
-  /// Structure to high_pass must outlive the object. theta0 > 0, theta order. noise_density: of
-  /// every axis, m/s^2/sqrt(Hz), > 0; empty: the configured ones.
+  /// The arguments from `structure` to `high_pass` must outlive the object. theta0: > 0, theta
+  /// order. noise_density: of every axis, m/s^2/sqrt(Hz), > 0; empty: the configured ones.
   RegressorTuning(const Structure& structure, const FloorLayout& layout,
                   const Deformations& deformations, const EstimatorOptions& options,
                   const DerivativeTriple& triple, const HighPass& high_pass,
                   const Eigen::VectorXd& theta0, std::vector<double> noise_density = {});
 
   void set_theta0(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density) override;
-  /// Parts are floors.
+  /// Each floor is one part.
   int parts() const override { return layout_->floors(); }
   void tune(int floor) override;
 
-  /// Rows of a floor when every motion is known.
+  /// Returns the rows of a floor if every motion is known.
   const FloorRows& rows(int floor) const override { return rows_[static_cast<std::size_t>(floor)]; }
-  /// known: (floors + 1) x frames flags of DeformationSet. Equations that need an unknown motion
-  /// are left out and the rest projected on their own eigenvectors. out: once a copy of
-  /// rows(floor).
+  /// Writes the rows of a floor for partly known motion into `out`, which must be a copy of
+  /// rows(floor). known: (floors + 1) x frames flags of DeformationSet. Equations that need an
+  /// unknown motion are left out; the others are projected on their own eigenvectors.
   void rows(int floor, const std::vector<std::uint8_t>& known, FloorRows& out);
 
   const Eigen::VectorXd& theta0() const override { return theta0_; }
   const std::vector<double>& noise_density() const override { return noise_density_; }
-  /// 3 / (zeta w) of the slowest section.
+  /// Returns 3 / (zeta w) of the slowest section, in instants, and at least `least`.
   int settle_rows(int least) const override;
-  /// The paper's variant: its filters settle.
+  /// Returns the settling time in the paper's variant, whose filters must settle; otherwise 0.
   int start_rows() const override;
   bool removes_past() const { return options_->variant != Variant::paper; }
   const PolePair& high_pass_poles() const { return high_pass_poles_; }
-  /// Largest relative change of the corners of a floor's sections.
+  /// Returns the largest relative change of the corner frequencies of a floor's sections.
   double detuning(int floor, const Eigen::VectorXd& theta) override;
   std::unique_ptr<RowTuning> copy() const override {
     return std::make_unique<RegressorTuning>(*this);
@@ -95,17 +93,92 @@ class RegressorTuning : public RowTuning {
   Eigen::VectorXd theta0_;
   std::vector<double> noise_density_;
   std::vector<double> mass_;    ///< floors x frames
-  Eigen::MatrixXd constraint_;  ///< of rigid floors; empty when flexible
+  Eigen::MatrixXd constraint_;  ///< constraint of rigid floors; empty if floors are flexible
   PerturbedDesigns perturbed_;
   std::vector<FloorNoise> noise_;
   std::vector<FloorRows> rows_;
 
-  // Of one call, kept so that it need not allocate.
+  // Buffers of single calls, kept to avoid allocations.
   std::vector<int> equations_;
   Eigen::MatrixXd basis_, modes_, stiffness_;  ///< frames x rows, frames x rows, frames x frames
   std::vector<double> projected_;
   Eigen::VectorXd frequency_hz_, force_, inertia_, common_;
   JacobiEigen eigen_;
+};
+
+/// Forms the regression rows of every floor from p, p' and p'' of the element deformations. Each
+/// row passes its oscillator section, the last part of the drift-controlled integrator
+/// (docs/equations.md (12)), and is weighted (13).
+class RegressorFilter : public RowFilter {
+ public:
+  /// settle: instants that a floor's filters run before its rows count, after a start or when other
+  /// motions become known. The tuning must outlive the filter.
+  RegressorFilter(RegressorTuning& tuning, const FloorLayout& layout, int settle);
+
+  void reset(int settle) override;
+  void push(const DeformationSet& set) override;
+
+  int count(int floor) const override {
+    const Floor& f = floor_[static_cast<std::size_t>(floor)];
+    return f.settling > 0 || f.starting ? 0 : f.rows->rows;
+  }
+  bool forms(int floor) const override {
+    const Floor& f = floor_[static_cast<std::size_t>(floor)];
+    return f.settling == 0 && f.rows->rows > 0;
+  }
+  const FloorRows& floor_rows(int floor) const override {
+    return *floor_[static_cast<std::size_t>(floor)].rows;
+  }
+
+  std::uint8_t origin_of(int floor, const FloorRows* rows) const override {
+    if (rows == nullptr) return 0;
+    if (rows == &tuning_->rows(floor)) return 1;
+    return rows == &floor_[static_cast<std::size_t>(floor)].some_known ? 2 : 0;
+  }
+  const FloorRows* floor_rows_from(int floor, std::uint8_t origin) const override {
+    if (origin == 1) return &tuning_->rows(floor);
+    return origin == 2 ? &floor_[static_cast<std::size_t>(floor)].some_known : nullptr;
+  }
+  void save(StateWriter& state) override { members(state); }
+  void load(StateReader& state) override { members(state); }
+
+ private:
+  template <typename Archive>
+  void members(Archive& a) {
+    a.within(settle_, 0, a.kMaxCount);
+    a.each_within(known_, 0, 1);
+    a.finite(rows_);
+    for (int floor = 0; floor < layout_->floors(); ++floor) {
+      Floor& f = floor_[static_cast<std::size_t>(floor)];
+      std::uint8_t origin = origin_of(floor, f.rows);
+      a(origin, f.some_known);
+      if (!f.some_known.fits(*layout_, floor)) a.refuse();
+      a.finite(f.s1, f.s2);
+      a(f.past, f.starting);
+      a.within(f.settling, 0, a.kMaxCount);
+      f.rows = floor_rows_from(floor, origin == 2 ? 2 : 1);
+    }
+  }
+
+  struct Floor {
+    const FloorRows* rows = nullptr;  ///< the tuning's rows, or some_known
+    FloorRows some_known;
+    std::vector<double> s1, s2;
+    UnknownPast past;
+    bool starting = false;  ///< too few rows since the start to determine the past
+    int settling = 0;
+  };
+  void rebuild(int floor);
+  bool all_known_around(int floor) const;
+  bool same_surroundings(int floor, const std::vector<std::uint8_t>& known) const;
+
+  RegressorTuning* tuning_;
+  const FloorLayout* layout_;
+  int settle_;
+  std::vector<std::uint8_t> known_;
+  std::vector<int> changed_;
+  std::vector<Floor> floor_;
+  std::vector<double> signal_, response_;
 };
 
 }  // namespace framewatch::estimator

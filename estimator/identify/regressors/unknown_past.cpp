@@ -6,10 +6,10 @@
 namespace framewatch::estimator {
 namespace {
 
-/// A shape that has fallen to this share of its start is over: what it still carries of a motion is
-/// a thousandth, ten times below the noise of good sensors.
+/// A shape is over when it has decayed to this share of its start. What it then carries of a motion
+/// is a thousandth, ten times below the noise of good sensors.
 constexpr double kOver = 1e-3;
-/// Below this a shape is set to zero, before numbers become denormal and slow.
+/// Value below which a shape is set to zero, before numbers become denormal and slow.
 constexpr double kGone = 1e-30;
 
 }  // namespace
@@ -38,7 +38,7 @@ void UnknownPast::add(int row, const PolePair& poles) {
   e.poles.push_back(poles);
   resize(e);
   for (std::size_t i = 0; i < e.now.size(); ++i) {
-    // Of a pair one was at 1 an instant ago, the other two instants ago.
+    // In each pair, one shape was 1 an instant ago, the other two instants ago.
     (i % 2 == 0 ? e.now : e.before)[i] = 1;
   }
 }
@@ -50,7 +50,7 @@ void UnknownPast::resize(Equation& e) const {
   e.fitted.assign(shapes * stride_, 0.0);
 }
 
-/// The shapes at the next instant; false when all are over.
+/// Advances the shapes by one instant. Returns false when all are over.
 bool UnknownPast::step(Equation& e) {
   bool any = false;
   for (std::size_t i = 0; i < e.now.size(); ++i) {

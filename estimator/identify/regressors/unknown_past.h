@@ -8,35 +8,36 @@
 
 namespace framewatch::estimator {
 
-/// Removes from the rows of a regression what their filters owe to the motion before the first
-/// sample, which nobody measured.
+/// Removes from the rows of a regression the effect of the motion before the first sample, which
+/// was not measured.
 ///
-/// A row [h, z] of a filter that starts at rest in full motion differs from the row of a filter
-/// that has always run by a combination of the filter's natural responses: two known shapes of time
-/// for each pair of poles, s_1(t), s_2(t), ..., with unknown factors. They are nuisance unknowns of
-/// that equation. Every row is replaced by its recursive residual: what is left of it when the
-/// shapes have been fitted to this and all earlier rows since the start. The sum of squares of
-/// recursive residuals is the sum of squares with the shapes projected out (Brown, Durbin and
-/// Evans, J. R. Stat. Soc. B 37 (1975), 149), so the window's sums of H^T H need to know nothing of
-/// starts, and a start costs each equation as many rows as it has shapes. docs/equations.md,
-/// starting in motion.
+/// A filter that starts at rest in full motion forms rows [h, z] that differ from those of a filter
+/// that has always run. The difference is a combination of the filter's natural responses: two
+/// known functions of time for each pair of poles, here called shapes, s_1(t), s_2(t), ..., with
+/// unknown factors. The factors are nuisance unknowns of that equation.
 ///
-/// A Givens rotation for each shape; numbers do not depend on libraries of mathematics.
+/// Every row is replaced by its recursive residual: the part that remains after the shapes have
+/// been fitted to this and all earlier rows since the start. The sum of squares of recursive
+/// residuals equals the sum of squares with the shapes projected out (Brown, Durbin and Evans, J.
+/// R. Stat. Soc. B 37 (1975), 149). So the window's sums of H^T H are unaffected by starts, and a
+/// start costs each equation as many rows as it has shapes. docs/equations.md, starting in motion.
+///
+/// Each shape takes one Givens rotation. The numbers do not depend on mathematical libraries.
 class UnknownPast {
  public:
-  /// stride: doubles of a row. Allocates for so many equations with so many shapes; begin() and
-  /// add() do when there are more.
+  /// stride: doubles in a row. Allocates for most_rows equations with most_shapes shapes; begin()
+  /// and add() allocate only beyond that.
   UnknownPast(int stride, int most_rows, int most_shapes);
 
-  /// Begins anew: the filters of `rows` equations start with the next instant.
+  /// Starts anew: the filters of `rows` equations start with the next instant.
   void begin(int rows);
-  /// Two shapes of an equation: s[t] = -a1 s[t-1] - a2 s[t-2].
+  /// Adds the two shapes of a pole pair to an equation: s[t] = -a1 s[t-1] - a2 s[t-2].
   void add(int row, const PolePair& poles);
-  /// Nothing is removed (any more).
+  /// Stops removing.
   void end() { equations_ = 0; }
 
-  /// One instant: replaces the rows, rows x stride. False while the equations do not yet have as
-  /// many rows as shapes: then nothing is left of them.
+  /// Replaces the rows of one instant, rows x stride. Returns false while the equations have fewer
+  /// rows than shapes; such rows must not be used.
   bool remove(double* rows);
 
   template <typename Archive>
@@ -51,14 +52,14 @@ class UnknownPast {
   }
 
  private:
-  static constexpr int kMaxEquations = 512;  ///< of a floor: beyond any building
-  static constexpr int kMaxPoles = 128;      ///< pairs of an equation, likewise
+  static constexpr int kMaxEquations = 512;  ///< equations of a floor, more than any building has
+  static constexpr int kMaxPoles = 128;  ///< pole pairs of an equation, more than any building has
   struct Equation {
     std::vector<PolePair> poles;
     std::vector<double> now, before;  ///< the shapes at this instant and the one before
     std::vector<double> factor;       ///< shapes x shapes, upper: R of S = Q R
     std::vector<double> fitted;       ///< shapes x stride: Q^T of the rows
-    std::vector<double> shape;        ///< of one call
+    std::vector<double> shape;        ///< buffer of one call
   };
   template <typename Archive>
   void archive(Archive& a, Equation& e) {

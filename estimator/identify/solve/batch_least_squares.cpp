@@ -12,7 +12,8 @@ Eigen::VectorXd batch_least_squares(const Structure& structure, const ParameterT
   for (const Element& element : estimator::elements(structure, table))
     for (const auto& [dof, coefficient] : element.b) b(dof, element.stiffness) = coefficient;
 
-  // Elements are of rank one, so H'H is the Hadamard product of b'b and the deformations' moments.
+  // Elements are of rank one, so H'H is the Hadamard product of b'b and the moments of the
+  // deformations.
   Eigen::MatrixXd deformation(motion.disp_rel.rows(), 2 * elements);
   deformation << motion.disp_rel * b, motion.vel_rel * b;
   const Eigen::MatrixXd inertia =

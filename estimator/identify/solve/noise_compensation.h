@@ -5,44 +5,45 @@
 
 #include "estimator/identify/elements/floor_layout.h"
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/row_filter.h"
+#include "estimator/identify/regressors/row_tuning.h"
 
 namespace framewatch::estimator {
 
-/// What sensor noise is expected to have added to the window's normal equations, W and w of
-/// docs/equations.md (15), (16), and how much of it the solver subtracts.
+/// The expected contribution of sensor noise to the window's normal equations, W and w of
+/// docs/equations.md (15), (16), and the part of it that the solver subtracts.
 class NoiseCompensation {
  public:
-  /// share: of the noise that is subtracted. With another one than kCompensatedShare every update()
-  /// packs it anew, which takes time.
+  /// share: the part of the noise to subtract. With a share other than kCompensatedShare, every
+  /// update() packs it anew, which takes time.
   explicit NoiseCompensation(const FloorLayout& layout, double share = kCompensatedShare);
 
-  /// level: variance of the noise that is there, divided by what the tuning assumes.
+  /// Updates to the rows of a window. level: variance of the actual noise over the variance that
+  /// the tuning assumes.
   void update(const RowFilter& rows, const WindowParts& sums, double level);
 
-  /// Values times scale.
+  /// Stands for values[i] * scale.
   struct Part {
     const double* values;
     double scale;
   };
-  /// Part of a floor's sums that is subtracted, packed like them.
+  /// Returns the part of a floor's sums that is subtracted, packed like them.
   Part compensation(int floor) const {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
     return {(f.packed.empty() ? f.rows->noise_compensation : f.packed).data(), level_ * f.instants};
   }
-  /// What the remaining share of W makes of the errors of the PerturbedDesigns in a floor's
-  /// equations: front unknowns x PerturbedDesigns::kCount.
+  /// Returns the effect that the remaining share of W has, with the errors of PerturbedDesigns, on
+  /// a floor's equations: front unknowns x PerturbedDesigns::kCount.
   Part bias(int floor) const {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
     if (f.rows == nullptr) return {nullptr, 0};
     return {f.rows->noise_bias.data(), f.instants * remaining_share()};
   }
 
-  /// W's diagonal, internal order: energy each regressor has from noise.
+  /// Returns the diagonal of W, internal order: the energy of each regressor that comes from noise.
   const std::vector<double>& energy() const { return energy_; }
-  /// Share of W that remains in the matrix.
+  /// Returns the share of W that remains in the matrix.
   double remaining_share() const { return level_ > 0 ? 1 - share_ : 1; }
-  /// Expected weighted residual energy from noise alone.
+  /// Returns the weighted residual energy that noise alone would leave.
   double residual() const { return residual_; }
   double residual(int floor) const {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
@@ -60,7 +61,7 @@ class NoiseCompensation {
     }
     a.finite(energy_, residual_, level_);
   }
-  /// It has been updated.
+  /// Returns true after the first update().
   bool known() const {
     return std::all_of(floor_.begin(), floor_.end(), [](const Floor& f) { return f.rows; });
   }
@@ -69,7 +70,7 @@ class NoiseCompensation {
   struct Floor {
     const FloorRows* rows = nullptr;
     double instants = 0;
-    std::vector<double> packed;  ///< what is subtracted when that is not kCompensatedShare
+    std::vector<double> packed;  ///< subtracted values if the share is not kCompensatedShare
   };
   FloorLayout layout_;
   double share_;
@@ -77,6 +78,37 @@ class NoiseCompensation {
   std::vector<double> energy_;
   double residual_ = 0;
   double level_ = 0;
+};
+
+/// The model's error: what the equations of a window leave beyond sensor noise. docs/equations.md,
+/// errors of the model.
+class ModelMisfit {
+ public:
+  explicit ModelMisfit(const FloorLayout& layout);
+
+  /// Updates to a window. solution: internal order. noise_known: the noise has the level that the
+  /// tuning assumes; otherwise the whole residual counts as model error.
+  void update(const WindowParts& sums, const std::vector<double>& solution,
+              const NoiseCompensation& noise, bool noise_known);
+
+  /// Returns the rms of what is left over the rms of the stiffness forces, the largest of the
+  /// floors whose equations hold the unknown. NaN without forces.
+  double misfit(int unknown) const;
+  /// Returns the relative error of the unknown that the misfit may cause, one standard deviation.
+  /// variance: the unknown's entry in the inverse of the normal matrix.
+  double error(int unknown, double variance) const;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a.finite(excess_, force_);
+  }
+
+ private:
+  int lowest_floor(int unknown) const;
+
+  FloorLayout layout_;
+  std::vector<double> excess_, force_;  ///< by floor, energies in the units of the rows
+  std::vector<double> x_, stiff_;
 };
 
 }  // namespace framewatch::estimator

@@ -4,24 +4,27 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/kernels.h"
 
 namespace framewatch::estimator {
 namespace {
 
-/// Measured: batch means of 20 blocks understate the spread by a seventh (docs/accuracy.md).
+/// Batch means of 20 blocks understate the spread by a seventh, as measured (docs/accuracy.md).
 constexpr double kCorrection = 1.155;
 
-/// 97.5 % point of Student's t, by Fisher's expansion: within a hundredth from 3 degrees on.
+/// Returns the 97.5 % point of Student's t by Fisher's expansion, within a hundredth from 3 degrees
+/// of freedom on.
 double student(double n) {
   constexpr double z = 1.959964, z2 = z * z;
   return z * (1 + (z2 + 1) / (4 * n) + ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
 }
 
-constexpr double kMinDegrees = 1.5;  // the expansion's end: beyond it nothing is published
+constexpr double kMinDegrees = 1.5;  // end of the expansion; below it no error is published
 
-/// Variance of a sum of so many scores over the sum of their squares about their mean.
+/// Returns the variance of a sum of this many scores over the sum of their squares about their
+/// mean.
 double spread_of(int blocks) {
   return kCorrection * kCorrection * blocks / (blocks - 1);
 }
@@ -98,7 +101,8 @@ void BatchMeans::assemble(int floor) {
   add_bias_columns(floor);
 }
 
-/// Whether rows of a block know the floor's own unknowns: its own rows or those of the floor below.
+/// Returns true if rows of a block hold the floor's own unknowns: rows of the floor or of the one
+/// below.
 bool BatchMeans::has_rows(int floor, int block) const {
   const auto holds = [&](int f) {
     return holds_[static_cast<std::size_t>(f * kBlocks + block)] != 0;
@@ -112,7 +116,7 @@ int BatchMeans::blocks_with_rows(int floor) const {
   return blocks;
 }
 
-/// By how much the spread of few blocks is widened, of a floor's own unknown.
+/// Returns the factor that widens the spread of few blocks for a floor's own unknown.
 double BatchMeans::widening(int floor, int position, int blocks) const {
   if (blocks < kFewest || blocks == kBlocks) return 1;
   const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
@@ -135,7 +139,7 @@ void BatchMeans::add_block_scores(int floor) {
   const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
   const int first = floor * layout_.own();
   const int unknowns = shape.front - 1;
-  // The response is the front's last column: x = [solution, -1] leaves its residual.
+  // The response is the front's last column, so x = [solution, -1] gives the residual.
   std::fill(x_.begin(), x_.end(), 0.0);
   std::copy_n(solution_.begin() + first, unknowns, x_.begin());
   x_[static_cast<std::size_t>(unknowns)] = -1;
@@ -146,7 +150,7 @@ void BatchMeans::add_block_scores(int floor) {
                                       score_.data(), shape.front, shape.stride);
     for (int i = 0; i < unknowns; ++i) columns(first + i)[b] += score_[static_cast<std::size_t>(i)];
   }
-  // The floor's own scores are now whole: what the story above adds went to that story's.
+  // The floor's own scores are now complete: the floor above has added its share.
   const int blocks = blocks_with_rows(floor);
   for (int u = first; u < first + layout_.own(); ++u) {
     double* row = columns(u);
@@ -192,6 +196,67 @@ void BatchMeans::finish(int floor) {
     new_share_[i] = prior_[i] * inverse_diagonal_[i];
     new_noise_share_[i] =
         noise_level_ * noise_.remaining_share() * noise_.energy()[i] * inverse_diagonal_[i];
+  }
+}
+
+MassErrors::MassErrors(const FloorLayout& layout)
+    : layout_(layout), factor_(layout), next_step_(2 * layout.floors()) {
+  static_assert(kDraws % kLane == 0);
+  const auto unknowns = static_cast<std::size_t>(layout.unknowns());
+  columns_.assign(unknowns * kDraws, 0.0);
+  new_error_.assign(unknowns, 0.0);
+  error_.assign(unknowns, 0.0);
+}
+
+void MassErrors::begin(StorySolver& solver, const GramShape& shape, const std::vector<double>& sums,
+                       double tolerance) {
+  solver.swap_factor(factor_);
+  shape_ = &shape;
+  sums_ = sums.data();
+  tolerance_ = tolerance;
+  std::fill(columns_.begin(), columns_.end(), 0.0);
+  next_step_ = 0;
+}
+
+/// Loads the floor's part of the right-hand side, times the error of its mass.
+void MassErrors::load(int floor) {
+  const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
+  const int response = shape.front - 1;
+  std::size_t at = shape.offset;
+  for (int i = 0; i < response; ++i) {
+    const int begin = packed_row_begin(i);
+    const double right = sums_[at + static_cast<std::size_t>(response - begin)];
+    double* to = column(floor * layout_.own() + i);
+    for (int draw = 0; draw < kDraws; ++draw)
+      to[draw] += tolerance_ * fixed_sign(floor, draw) * right;
+    at += static_cast<std::size_t>(shape.stride - begin);
+  }
+}
+
+bool MassErrors::advance(int count) {
+  if (!running()) return false;
+  for (; count > 0 && running(); --count, ++next_step_) {
+    if (next_step_ < layout_.floors()) {
+      load(next_step_);
+      factor_.forward(next_step_, columns_.data(), kDraws);
+    } else {
+      const int floor = 2 * layout_.floors() - 1 - next_step_;
+      factor_.backward(floor, columns_.data(), kDraws);
+      finish(floor);
+    }
+  }
+  if (running()) return false;
+  error_.swap(new_error_);
+  return true;
+}
+
+void MassErrors::finish(int floor) {
+  for (int u = floor * layout_.own(); u < (floor + 1) * layout_.own(); ++u) {
+    const double* row = column(u);
+    double sum = 0;
+    for (int draw = 0; draw < kDraws; ++draw) sum += row[draw] * row[draw];
+    const double error = std::sqrt(sum / kDraws);
+    new_error_[static_cast<std::size_t>(u)] = std::isfinite(error) ? error : 0;
   }
 }
 

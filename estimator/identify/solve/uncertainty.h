@@ -4,27 +4,30 @@
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/elements/perturbed_designs.h"
+#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/gram/sliding_gram.h"
 #include "estimator/identify/solve/noise_compensation.h"
-#include "estimator/identify/solve/story_factor.h"
 #include "estimator/identify/solve/story_solver.h"
 
 namespace framewatch::estimator {
 
-/// Standard deviation of every relative unknown: spread, by batch means (the scores of the window's
-/// blocks, nearly independent although the residuals inside a block are not, carried through the
-/// factored normal equations), and bias: how far prior and noise can move the solution toward a
-/// design that is wrong by its tolerance. docs/equations.md, batch means.
+/// Computes the standard deviation of every relative unknown from spread and bias.
+/// docs/equations.md, batch means.
 ///
-/// A pass begins when a block closes and takes steps(), spread over the instants of the next block
-/// by their count, so that no instant is late. Results are those of the last completed pass. The
-/// scores are those of the newest kBlocks blocks about a solution that fits them, whatever the
-/// window's length: a short window has too few blocks, so it takes these, scaled to its own
-/// information. While fewer blocks have rows, the spread is taken from those, as Student's
-/// distribution widens it, with as many degrees of freedom as there are blocks that count: of a
-/// motion that has just begun the last ones carry nearly all information. From fewer than kFewest
-/// nothing is known, and the error is infinite.
+/// The spread comes from batch means: the scores of the window's blocks are carried through the
+/// factored normal equations. Blocks are nearly independent, although the residuals inside a block
+/// are not. The bias is how far prior and noise can move the solution toward a design that is off
+/// by its tolerance.
+///
+/// A pass begins when a block closes and takes steps(), spread over the instants of the next block,
+/// so that no instant is late. Results are those of the last completed pass. The scores come from
+/// the newest kBlocks blocks and a solution that fits them, whatever the window's length. A short
+/// window has too few blocks, so it uses these scores, scaled to its own information.
+///
+/// While fewer blocks have rows, the spread comes from those and is widened by Student's
+/// distribution, with as many degrees of freedom as blocks count: the last blocks of a motion that
+/// has just begun carry nearly all information. With fewer than kFewest blocks, the error is
+/// infinite.
 class BatchMeans {
  public:
   static constexpr int kBlocks = 20, kFewest = 4;
@@ -32,16 +35,18 @@ class BatchMeans {
   /// compensation: share of the noise, see NoiseCompensation.
   explicit BatchMeans(const FloorLayout& layout, double compensation = kCompensatedShare);
 
-  /// The window of kBlocks blocks and the solution that fits it.
+  /// The window of kBlocks blocks, by the solution that fits it and its information.
   struct Fit {
     const std::vector<double>* solution;
     const std::vector<double>* information;
   };
-  /// sums: SlidingGram, after maintain() closed the block that ends the window `solver` solved and
-  /// `fit` fits, and before the next one closes: the pass must be done by then; or other blocks
-  /// that last as long. Takes the solver's factor; its solution stays. prior_doubt: how far the
-  /// prior's centre may be off, over the tolerance of a design. noise_level: variance of the
-  /// noise that is there, divided by what the tuning assumes.
+  /// Begins a pass. It takes the solver's factor and leaves the solution there.
+  ///
+  /// sums: a SlidingGram after maintain() closed the block that ends both the window `solver`
+  /// solved and the window `fit` fits, or other blocks of the same length. The pass must be done
+  /// before the next block closes. prior_doubt: how far the prior's center may be off, over the
+  /// tolerance of a design. noise_level: variance of the actual noise over the variance that the
+  /// tuning assumes.
   template <typename Sums>
   void begin(const Sums& sums, StorySolver& solver, const Fit& fit,
              const std::vector<double>& prior, const std::vector<double>& prior_doubt,
@@ -53,29 +58,29 @@ class BatchMeans {
     }
     begin(sums.shape(), solver, fit, prior, prior_doubt, noise, noise_level);
   }
-  /// Of a whole pass.
+  /// Returns the number of steps of a pass.
   int steps() const { return 2 * layout_.floors(); }
   bool running() const { return next_step_ < steps(); }
-  /// Goes on by at most `count` steps; true when that completed the pass.
+  /// Advances by at most `count` steps. Returns true if that completed the pass.
   bool advance(int count);
-  /// Abandons the pass under way, if any; results stay.
+  /// Abandons the pass in progress, if any. Results remain.
   void cancel() { next_step_ = steps(); }
 
-  /// From now on the unknown is relative to another theta0: times `factor`.
+  /// Multiplies the results of an unknown by `factor`, because its theta0 has changed.
   void rescale(int unknown, double factor) {
     std_error_[static_cast<std::size_t>(unknown)] *= factor;
   }
-  /// Internal order, relative to theta0.
+  /// Returns the standard errors, internal order, relative to theta0.
   const std::vector<double>& std_error() const { return std_error_; }
-  /// Share of the prior in the solution, 0..1 and rounding.
+  /// Returns the share of the prior in the solution, 0..1 up to rounding.
   const std::vector<double>& prior_share() const { return prior_share_; }
-  /// Share of the noise that remains in the equations, 0..1 and rounding.
+  /// Returns the share of the noise that remains in the equations, 0..1 up to rounding.
   const std::vector<double>& noise_share() const { return noise_share_; }
-  /// Diagonal of the inverse of the normal matrix, relative to theta0; valid when advance() has
-  /// completed a pass, until the next one begins.
+  /// Returns the diagonal of the inverse of the normal matrix, relative to theta0. Valid from the
+  /// advance() that completes a pass to the next begin().
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
 
-  /// rows, sums: those of the pass under way, if any.
+  /// rows, sums: those of the pass in progress, if any.
   template <typename Archive, typename Sums>
   void archive(Archive& a, const RowFilter& rows, const Sums& sums) {
     a.within(next_step_, 0, steps());
@@ -114,13 +119,59 @@ class BatchMeans {
   double noise_level_ = 0;
   int next_step_;
   const GramShape* shape_ = nullptr;
-  std::vector<const double*> block_;    ///< null: before the start
+  std::vector<const double*> block_;    ///< nullptr: before the start
   std::vector<std::uint8_t> holds_;     ///< floors x blocks: the floor has rows in it
   std::vector<double> columns_values_;  ///< unknowns x (blocks, then perturbations)
   PerturbedDesigns perturbed_;
   std::vector<double> solution_, score_scale_, prior_, prior_doubt_, x_, score_, inverse_diagonal_;
   std::vector<double> new_error_, new_share_, new_noise_share_;
   std::vector<double> std_error_, prior_share_, noise_share_;
+};
+
+/// Computes the effect of mass errors on the solution of a building with a sensor on every floor.
+/// The response of a floor's equations is proportional to its mass. The result is the rms over
+/// fixed random errors, each within the masses' tolerance, carried through the normal equations.
+/// Not for groups of stories. docs/equations.md, errors of the model.
+class MassErrors {
+ public:
+  static constexpr int kDraws = 20;
+
+  explicit MassErrors(const FloorLayout& layout);
+
+  /// Begins a pass. tolerance: relative standard deviation of a floor's mass. Takes the solver's
+  /// factor. sums: those that were factored; they must be kept until the pass is done.
+  void begin(StorySolver& solver, const GramShape& shape, const std::vector<double>& sums,
+             double tolerance);
+  bool running() const { return next_step_ < 2 * layout_.floors(); }
+  /// Advances by at most `count` floors. Returns true if that completed the pass.
+  bool advance(int count);
+  void cancel() { next_step_ = 2 * layout_.floors(); }
+  /// Returns the errors of the last completed pass, relative to theta0, internal order.
+  const std::vector<double>& error() const { return error_; }
+
+  /// shape, sums: those of the pass in progress, if any.
+  template <typename Archive>
+  void archive(Archive& a, const GramShape& shape, const std::vector<double>& sums) {
+    a.within(next_step_, 0, 2 * layout_.floors());
+    a(factor_, columns_, new_error_);
+    a.finite(tolerance_, error_);
+    shape_ = &shape;
+    sums_ = sums.data();
+  }
+
+ private:
+  void load(int floor);
+  void finish(int floor);
+  double* column(int unknown) { return &columns_[static_cast<std::size_t>(unknown) * kDraws]; }
+
+  FloorLayout layout_;
+  StoryFactor factor_;
+  const GramShape* shape_ = nullptr;
+  const double* sums_ = nullptr;
+  double tolerance_ = 0;
+  int next_step_;
+  std::vector<double> columns_;  ///< unknowns x kDraws
+  std::vector<double> new_error_, error_;
 };
 
 }  // namespace framewatch::estimator

@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/guessed_design.h"
-#include "estimator/identify/groups/axis_motion.h"
 #include "estimator/identify/groups/reduced_building.h"
-#include "estimator/motion/oscillator_section.h"
+#include "estimator/motion/derivative_triple.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/natural_frequencies.h"
 
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kHighestCorner = 0.2;  // of the sampling rate
+constexpr double kHighestCorner = 0.2;  // share of the sampling rate
 constexpr double kSmallestShare = 1e-9;
-constexpr int kShapes = 4;  // of an element: two of the high-pass, two of the oscillator section
+constexpr int kShapes = 4;  // of an element: two of the high-pass, two of its section
 
 std::size_t place_of(int count) {
   return static_cast<std::size_t>(count);
@@ -47,7 +47,7 @@ ElementDrift::ElementDrift(const PipelineConfig& config, const ParameterTable& t
       was_known_(elements_.size(), 0),
       sums_(place_of(blocks_) * elements_.size(), 0.0),
       counts_(sums_.size(), 0) {
-  past_.reserve(elements_.size());  // copies would not keep what they reserve
+  past_.reserve(elements_.size());  // a copy would not keep reserved memory
   for (std::size_t e = 0; e < elements_.size(); ++e) past_.emplace_back(1, 1, kShapes);
   const double hz = corner_hz(config);
   const OscillatorSection section(hz, config.options.filter_damping, config.options.rate_hz);
@@ -78,7 +78,8 @@ void ElementDrift::find_stories(const ParameterTable& table, const FloorLayout& 
     }
 }
 
-/// The mean over a group's frames of what its upper floor moves beyond its lower one.
+/// Sets up the mean over a group's frames of the motion of its upper floor relative to its lower
+/// one.
 void ElementDrift::find_groups(const PipelineConfig& config, const ParameterTable& table) {
   const Structure& s = config.structure;
   const ReducedBuilding building =

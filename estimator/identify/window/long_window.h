@@ -1,47 +1,55 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/window/tuned_regression.h"
 #include "estimator/identify/window/window_solution.h"
+#include "estimator/setup/pipeline_config.h"
 
 namespace framewatch::estimator {
 
-/// The normal equations of a long window, an hour for instance, in BatchMeans::kBlocks pieces of
-/// whole blocks: it identifies what moves too weakly for an ordinary window. Five windows per
-/// length. docs/equations.md (47).
+/// The normal equations of a long window, for instance an hour, in BatchMeans::kBlocks pieces of
+/// whole blocks. It identifies parameters whose elements move too weakly for an ordinary window. A
+/// length has five windows. docs/equations.md (47).
 ///
-/// A block whose response has more than kMaxOfUsual times the usual energy is scaled down to that,
-/// so that one strong motion, a single piece without a spread, does not dominate the hour. A block
-/// whose residual under the last solution has more than kMaxOfUsualMisfit times the usual energy,
-/// a sensor's spike for instance, is scaled down by the square of the excess. The equations hold
-/// with any weights. Nearly all of the expected sensor noise is subtracted, because over an hour
+/// Two limits keep strong blocks from dominating. A block whose response has more than kMaxOfUsual
+/// times the usual energy is scaled down to that, because a single strong motion has no spread. A
+/// block whose residual under the last solution has more than kMaxOfUsualMisfit times the usual
+/// energy, as with a sensor's spike, is scaled down by the square of the excess. The equations hold
+/// with any weights.
+///
+/// Nearly all of the expected sensor noise is subtracted, because its sum over an hour is hardly
+/// random.
 /// its sum is hardly random any more.
 class LongWindow {
  public:
   static constexpr double kMaxOfUsual = 10, kMaxOfUsualMisfit = 4, kCompensatedShare = 0.98;
 
-  /// options.long_window_s: at least that of BatchMeans::kBlocks blocks. window: of its estimates.
-  /// Without configured noise the gate is that of ordinary windows: measured noise is too inexact
-  /// to be subtracted from a motion as weak as itself.
-  /// Blocks count alike, see above, or as they are.
+  /// Limits the blocks as described above, or takes them with their energy. options.long_window_s
+  /// must cover at least BatchMeans::kBlocks blocks. window: WindowEstimate::window of its
+  /// estimates. Without configured noise, the gate is that of ordinary windows: measured noise is
+  /// too inexact to be subtracted from a motion that is as weak.
   enum class Blocks { limited, by_energy };
   LongWindow(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
              const EstimatorOptions& options, int block_rows, int window, bool noise_configured,
              Blocks blocks = Blocks::limited);
 
   int rows() const { return kPieces * piece_blocks_ * block_rows_; }
-  /// The tuning has changed: everything so far is of other rows and is discarded.
+  /// Discards everything so far, because the tuning has changed and old sums belong to other rows.
   void retuned();
-  /// The tuning has changed, and everything so far is kept as if of the new one: unknowns become
-  /// relative to theta0 times `factor`, internal order.
+  /// Keeps everything so far after a change of the tuning, as if it belonged to the new one.
+  /// Unknowns become relative to theta0 times `factor`, internal order.
   void rescale(const std::vector<double>& factor);
-  /// The pieces so far are not used again.
+  /// Discards the pieces so far.
   void begin_anew();
-  /// A block has closed at `time`, the end of its last instant. known: places with a working
-  /// sensor. Blocks with other places than the rest are left out; when more of them than a piece
-  /// holds come in a row, the window begins anew with them.
+  /// Takes the block that closed at `time`, the end of its last instant. known: flags of places
+  /// with a working sensor. Blocks with other places than the rest are left out. When more of them
+  /// come in a row than a piece holds, the window starts anew with them.
   void block_closed(SlidingGram& sums, const std::vector<std::uint8_t>& known, Time time);
 
   struct Context {
@@ -50,12 +58,12 @@ class LongWindow {
     WindowSolution::Trust trust;
     bool tuned;
   };
-  /// One instant's share of the work; the estimate that it completed, or null.
+  /// Does one instant's share of the work. Returns the estimate that it completed, or nullptr.
   const WindowEstimate* advance(const Context& context);
-  /// Of the newest estimate.
+  /// Returns the solution of the newest estimate.
   const WindowSolution& solution() const { return solution_; }
 
-  // Completed pieces as SlidingGram has blocks.
+  // Gives completed pieces in the way SlidingGram gives blocks.
   const GramShape& shape() const { return shape_; }
   const double* block(int age) const;
   bool holds(int age, int floor) const {
@@ -91,7 +99,7 @@ class LongWindow {
   bool fits(const std::vector<std::uint8_t>& known);
   double weight(const double* block);
   void rescale(double* block, const std::vector<double>& factor);
-  /// Of the response, or of its residual under the last solution.
+  /// Returns the energy of the response, or of its residual under the last solution.
   double energy(const double* block, bool residual);
   void close_piece();
   void add_some();
@@ -107,22 +115,75 @@ class LongWindow {
   WindowSolution solution_;
   WindowEstimate estimate_;
   std::vector<double> ring_, current_, sum_, zero_;
-  std::vector<double> ring_instants_, instants_;  ///< floors of every piece; of the current one
-  std::vector<double> ring_rows_;                 ///< of every piece, weighted
-  std::vector<Time> begins_;                      ///< of every piece
-  Time end_{}, since_{};                          ///< of the newest piece; of the current one
+  std::vector<double> ring_instants_, instants_;  ///< by floor: of every piece; of this one
+  std::vector<double> ring_rows_;                 ///< weighted rows of every piece
+  std::vector<Time> begins_;                      ///< start of every piece
+  Time end_{}, since_{};  ///< end of the newest piece; start of the current one
   std::vector<int> whole_instants_;
-  double usual_ = 0;         ///< energy of a block, about the median; 0: none seen
-  double usual_misfit_ = 0;  ///< likewise, of its residual
+  double usual_ = 0;         ///< energy of a typical block, near the median; 0: unknown
+  double usual_misfit_ = 0;  ///< the same for its residual
   std::vector<double> fit_;  ///< the last solution
-  std::vector<double> x_;    ///< of one call
-  double rows_ = 0;          ///< of the current piece, weighted
-  int blocks_ = 0;           ///< of the current piece
+  std::vector<double> x_;    ///< buffer of one call
+  double rows_ = 0;          ///< weighted rows of the current piece
+  int blocks_ = 0;           ///< blocks of the current piece
   std::int64_t pieces_ = 0;
-  std::vector<std::uint8_t> known_;  ///< of all blocks so far
-  int left_out_ = 0;                 ///< blocks in a row that were left out
+  std::vector<std::uint8_t> known_;  ///< places of all blocks so far
+  int left_out_ = 0;                 ///< blocks left out in a row
   Work work_ = Work::none;
-  std::size_t added_ = 0;  ///< doubles, in Work::adding
+  std::size_t added_ = 0;  ///< doubles added so far in Work::adding
+};
+
+/// Holds the bending stiffness of a building in groups (krx, kry). It belongs to the whole
+/// building, changes slowly, and a window of seconds hardly shows it. It is identified in
+/// consecutive windows of kWindow_s, each weighted by its error. The sliding windows hold it at the
+/// value that these windows and the design give together. docs/equations.md, groups of stories.
+class HeldBending {
+ public:
+  static constexpr double kWindow_s = 10;
+  /// Least relative error, and relative drift from one such window to the next.
+  static constexpr double kMin = 0.02, kDrift = 0.01;
+
+  /// design: theta order, SI.
+  HeldBending(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
+              const EstimatorOptions& options, int block_rows, bool noise_configured,
+              const Eigen::VectorXd& design);
+
+  /// Discards the current window, because other samples follow.
+  void restart() { window_.retuned(); }
+  /// Applies LongWindow::rescale(). The window survives retuning, because strong motion does not
+  /// last long enough otherwise.
+  void retuned(const std::vector<double>& factor) { window_.rescale(factor); }
+  void block_closed(SlidingGram& sums, const std::vector<std::uint8_t>& known, Time time) {
+    window_.block_closed(sums, known, time);
+  }
+  /// Does one instant's share of the work. Returns true if the held value has changed.
+  bool advance(const LongWindow::Context& context);
+
+  struct Held {
+    int parameter;
+    int unknown;
+    double value;      ///< N*m/rad
+    double std_error;  ///< relative
+  };
+  const std::vector<Held>& held() const { return held_; }
+
+  template <typename Archive>
+  void archive(Archive& a, TunedRegression& regression) {
+    window_.archive(a, regression);
+    for (Held& h : held_) {
+      a.within(h.value, std::numeric_limits<double>::min(), a.kMax);
+      a.within(h.std_error, kMin, 1);
+    }
+  }
+
+ private:
+  /// Returns the largest relative distance of the stiffnesses from the point where the equations
+  /// were linearized.
+  double detuning(const WindowSolution& solution) const;
+
+  LongWindow window_;
+  std::vector<int> stiffnesses_;  ///< the unknowns that are stiffnesses
+  std::vector<Held> held_;
 };
 
 }  // namespace framewatch::estimator

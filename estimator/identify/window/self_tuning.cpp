@@ -5,13 +5,13 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kMaxPasses = 6;     // of tuning before the first estimate
-constexpr double kDetuned = 0.1;  // change of a filter's corner that asks for re-tuning
-constexpr int kMinFloors = 4;     // checked or tuned per instant
-/// Instants a newly tuned regression takes in per instant of input: many for a small building, so
-/// that it starts soon, and few for a large one, so that no shift is late.
+constexpr int kMaxPasses = 6;     // tuning passes before the first estimate
+constexpr double kDetuned = 0.1;  // relative change of a filter's corner that requires retuning
+constexpr int kMinFloors = 4;     // floors checked or tuned per instant, at least
+/// Limits of the instants that a newly tuned regression takes in per instant of input. A small
+/// building takes many, so that it starts soon; a large one takes few, so that no instant is late.
 constexpr int kMaxCatchUp = 8, kMinCatchUp = 2;
-constexpr double kCatchUpWork = 6e5;  // entries of the floors' fronts, per instant
+constexpr double kCatchUpWork = 6e5;  // entries of the floors' fronts per instant
 
 }  // namespace
 
@@ -54,8 +54,8 @@ void SelfTuning::begin_check(const TunedRegression& active, const std::vector<do
                              const std::vector<double>& std_error,
                              const std::vector<std::uint8_t>& shown, const AxisNoise& noise) {
   const bool any = std::any_of(shown.begin(), shown.end(), [](auto s) { return s != 0; });
-  // Groups whose design is far off show nothing until the noise is known: what the filters leave
-  // over is taken for noise.
+  // Groups whose design is far off show nothing until the noise is known, because the residual
+  // counts as noise.
   if (!any && (noise_known_ || !layout_.grouped())) return;
   retuned_design(layout_, table_, active.tuning().theta0(), ratio, std_error, shown, work_,
                  next_theta0_);
@@ -104,7 +104,7 @@ bool SelfTuning::step(std::unique_ptr<TunedRegression>& active, const MotionRing
     case Phase::catching_up:
       if (!catch_up(*active, ring)) break;
       active.swap(standby_);
-      noise_known_ = noise_known_ || noise_measured_;  // measured anew: until then as before
+      noise_known_ = noise_known_ || noise_measured_;  // newly measured; otherwise as before
       phase_ = Phase::idle;
       ++retunes_;
       return true;

@@ -9,63 +9,63 @@
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/tuned_regression.h"
-#include "estimator/setup/tuning.h"
+#include "estimator/setup/pipeline_config.h"
 
 namespace framewatch::estimator {
 
-/// Checks whether the corners of the row filters still match what was identified. When they do not,
-/// it tunes a second regression, the standby, lets it catch up through the motion ring and
-/// exchanges it for the active one. All of it in slices, a fixed amount of work per instant, in
-/// memory taken at the start. docs/equations.md, retuning.
+/// Checks if the corner frequencies of the row filters still match the identified parameters. If
+/// not, it tunes a second regression, the standby, lets it catch up through the motion ring, and
+/// exchanges it for the active one. Each instant does a fixed amount of work. Memory is allocated
+/// only in the constructor. docs/equations.md, retuning.
 class SelfTuning {
  public:
-  /// standby: equal to the active regression. fill: instants a motion needs to become valid.
-  /// noise_known: see below, of the active regression.
+  /// standby: equal to the active regression. fill: instants that a motion needs to become valid.
+  /// noise_known: see noise_known(), for the active regression.
   SelfTuning(const FloorLayout& layout, const ParameterTable& table,
              std::unique_ptr<TunedRegression> standby, int blocks, int fill, bool noise_known);
 
-  /// Exchanges `active` for a regression that is tuned to this; before() is then the former one. To
-  /// be called before the first instant.
+  /// Exchanges `active` for a regression with this tuning; before() then returns the former one.
+  /// Call it before the first instant.
   void start_tuned(std::unique_ptr<TunedRegression>& active, const Tuning& tuning);
 
-  /// Instants the ring must hold for a regression that needs `warm_up` of them.
+  /// Returns the instants that the ring must hold for a regression that needs `warm_up` of them.
   static int ring_rows(int warm_up) { return 2 * warm_up + 2; }
 
-  /// The input was interrupted: a re-tuning under way is abandoned.
+  /// Abandons a retuning in progress after an interruption of the input.
   void restart() {
     phase_ = Phase::idle;
     lending_ = false;
   }
   bool idle() const { return phase_ == Phase::idle; }
-  /// Once per completed pass of batch means: whether the filters should be checked now. Every time
-  /// until they were found right, then once a window.
+  /// Returns true if the filters should be checked now: at every call until they match, then once
+  /// per window. Call it once per completed pass of batch means.
   bool due();
   /// Begins a check. ratio, std_error: of the window's solution, internal order, relative to
-  /// theta0; shown: whether the window shows the unknown. noise: when rows are weighted by another
-  /// one, they are formed anew.
+  /// theta0. shown: flags of the unknowns that the window shows. noise: if its ratios have changed,
+  /// the rows are weighted and formed anew.
   void begin_check(const TunedRegression& active, const std::vector<double>& ratio,
                    const std::vector<double>& std_error, const std::vector<std::uint8_t>& shown,
                    const AxisNoise& noise);
   /// Begins a tuning to other axes.
   void begin_axes(const TunedRegression& active, const std::vector<std::uint8_t>& present,
                   const RowTuning::Known& known);
-  /// Tunes the standby as the active regression is, and lends it: until give_back() it is not used
-  /// for tuning.
+  /// Tunes the standby as the active regression is tuned, and lends it. Until give_back(), it is
+  /// not used for tuning.
   void lend(const TunedRegression& active);
-  /// The standby while it is lent and tuned, otherwise null.
+  /// Returns the standby while it is lent and tuned, otherwise nullptr.
   TunedRegression* lent() { return phase_ == Phase::lent ? standby_.get() : nullptr; }
   void give_back() { restart(); }
-  /// Instants a regression can take in per instant of input.
+  /// Returns the instants that a regression can take in per instant of input.
   int work_per_instant() const { return catch_up_per_instant_; }
-  /// One instant's share of the work. True when `active` was exchanged for the newly tuned
-  /// regression; before() is then the former one.
+  /// Does one instant's share of the work. Returns true if `active` was exchanged for the retuned
+  /// regression; before() then returns the former one.
   bool step(std::unique_ptr<TunedRegression>& active, const MotionRing& ring);
   const TunedRegression& before() const { return *standby_; }
   TunedRegression& standby() { return *standby_; }
 
-  /// The noise by which the active regression weights its rows is known, of every axis.
+  /// Returns true if the noise that weights the active regression's rows is known for every axis.
   bool noise_known() const { return noise_known_; }
-  /// A check has found the filters right.
+  /// Returns true if a check has found that the filters match.
   bool tuned() const { return tuned_; }
   std::int64_t retunes() const { return retunes_; }
 
@@ -95,11 +95,11 @@ class SelfTuning {
   int blocks_, fill_, parts_per_instant_, catch_up_per_instant_;
   Phase phase_ = Phase::idle;
   bool tuned_ = false;
-  bool lending_ = false;  ///< what is being tuned is to be lent
+  bool lending_ = false;  ///< the standby is being tuned to be lent
   int next_part_ = 0, passes_ = 0, since_check_ = 0;
   double detuning_ = 0;
   bool noise_known_;
-  bool noise_measured_ = false;  ///< noise_ is known of every axis
+  bool noise_measured_ = false;  ///< noise_ holds the measured noise of every axis
   bool noise_differs_ = false;
   std::vector<double> noise_;
   std::int64_t retunes_ = 0;

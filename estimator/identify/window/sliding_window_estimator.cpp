@@ -4,27 +4,20 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/guessed_design.h"
-#include "estimator/identify/groups/axis_motion.h"
 #include "estimator/identify/groups/group_tuning.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/regressor_tuning.h"
-#include "estimator/identify/window/window_rows.h"
+#include "estimator/identify/window/tuned_regression.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kBlocks = BatchMeans::kBlocks;  // per window
-/// Of the main window: rows enough for standard errors, but for the first of a start.
+constexpr int kBlocks = BatchMeans::kBlocks;  // blocks per window
+/// Share of the main window with rows that is enough for standard errors, except for the first rows
+/// of a start.
 constexpr double kWarm = 0.75 * BatchMeans::kFewest / BatchMeans::kBlocks;
-
-std::unique_ptr<MotionSource> motion_source(const Structure& structure, const FloorLayout& layout,
-                                            const std::vector<SensorAxis>& axes) {
-  if (layout.grouped()) return std::make_unique<AxisMotion>(static_cast<int>(axes.size()));
-  return std::make_unique<Deformations>(structure, layout, axes);
-}
 
 }  // namespace
 
@@ -35,7 +28,12 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       matched_(options_.variant == Variant::matched || table.grouped()),
       table_(table),
       layout_(config_.structure, table_, config_.axes),
-      motion_source_(motion_source(config_.structure, layout_, config_.axes)),
+      deformations_(layout_.grouped()
+                        ? nullptr
+                        : std::make_unique<Deformations>(config_.structure, layout_, config_.axes)),
+      axis_motion_(layout_.grouped()
+                       ? std::make_unique<AxisMotion>(static_cast<int>(config_.axes.size()))
+                       : nullptr),
       triple_(triple_of(options_, layout_.grouped(), 0)),
       high_pass_(options_.high_pass_hz, options_.rate_hz),
       blocks_(kBlocks),
@@ -44,7 +42,7 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       other_blocks_(blocks_of(options_.other_windows_s, options_.rate_hz, block_rows_)),
       integrator_(triples_of(options_, layout_.grouped(), config_.axes), high_pass_),
       noise_(config_.axes, options_.rate_hz),
-      ring_(*motion_source_,
+      ring_(motion_source(),
             SelfTuning::ring_rows(kept_beside(options_, layout_.grouped()) +
                                   longest_window(block_rows_, other_blocks_) + triple_.length())),
       drift_(config_, table_, layout_, block_rows_,
@@ -52,7 +50,7 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       series_(config_.structure, layout_, table_, options_, kWarm, other_blocks_, block_rows_),
       estimate_(static_cast<std::size_t>(table_.size())),
       nothing_(config_.axes.size(), kNaN) {
-  boxplots_.reserve(estimate_.value.size());  // copies would not keep what they reserve
+  boxplots_.reserve(estimate_.value.size());  // a copy would not keep reserved memory
   for (std::size_t p = 0; p < estimate_.value.size(); ++p)
     boxplots_.emplace_back(options_.boxplot_windows);
   seen_axes_.assign(layout_.grouped() ? config_.axes.size() : 0, 1);
@@ -94,9 +92,8 @@ std::unique_ptr<RowTuning> SlidingWindowEstimator::make_tuning(
     return std::make_unique<GroupTuning>(config_, options, table_, layout_,
                                          GroupDesign{design, config_.bending_nmprad}, triple_,
                                          high_pass_);
-  return std::make_unique<RegressorTuning>(structure, layout_,
-                                           static_cast<const Deformations&>(*motion_source_),
-                                           options, triple_, high_pass_, design);
+  return std::make_unique<RegressorTuning>(structure, layout_, *deformations_, options, triple_,
+                                           high_pass_, design);
 }
 
 std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
@@ -180,7 +177,7 @@ void SlidingWindowEstimator::advance(const std::vector<double>& accel, Time time
   last_time_ = time;
   integrator_.push(accel);
   noise_.push(accel);
-  motion_source_->compute(integrator_, ring_.push());
+  motion_source().compute(integrator_, ring_.push());
   drift_.push(ring_.at(ring_.end() - 1));
   if (layout_.grouped()) follow_axes(ring_.at(ring_.end() - 1).known);
   due_ = ++since_hop_ >= hop_rows_;
@@ -213,7 +210,7 @@ void SlidingWindowEstimator::block_closed(Time window_end) {
   if (bending_) bending_->block_closed(active_->sums(), known, window_end);
 }
 
-/// What is worked on between the ends of two blocks.
+/// Does the work that is spread over the instants between two block ends.
 void SlidingWindowEstimator::go_on() {
   if (errors_new_) check_tuning();
   if (long_ && other_ == nullptr) advance_long();
@@ -226,7 +223,7 @@ void SlidingWindowEstimator::advance_long() {
   other_ = long_->advance(
       {active_.get(), &ring_.at(ring_.end() - 1).known, {matched_, noise_.configured()}, tuned()});
   if (other_ == nullptr || !self_tuning_ || self_tuning_->tuned() || !self_tuning_->due()) return;
-  // While no ordinary window shows a parameter, the filters are tuned to the long ones.
+  // While no ordinary window shows a parameter, the filters are tuned to the long windows.
   const WindowSolution& solution = long_->solution();
   for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = solution.shown(static_cast<int>(u));
   self_tuning_->begin_check(*active_, solution.solver().solution(), solution.std_error(), shown_,

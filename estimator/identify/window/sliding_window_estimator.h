@@ -4,13 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "estimator/identify/elements/motion_source.h"
+#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/estimate/boxplot.h"
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/element_drift.h"
-#include "estimator/identify/window/held_bending.h"
-#include "estimator/identify/window/late_windows.h"
 #include "estimator/identify/window/long_window.h"
 #include "estimator/identify/window/model_check.h"
 #include "estimator/identify/window/self_tuning.h"
@@ -21,40 +19,41 @@
 
 namespace framewatch::estimator {
 
-/// The method, step by step, one instant after the other: drift-controlled integration, element
-/// deformations, rows of the regression, the sliding sum of H^T H, its solution with standard
-/// errors, boxplots. Calibrated sample sets in; out, every hop (0.01 s), the estimate of the window
-/// (5 s) that ends there.
+/// The estimation, instant by instant: drift-controlled integration, element deformations, rows of
+/// the regression, sliding sum of H^T H, solution with standard errors, boxplots. Takes calibrated
+/// sample sets. Returns at every hop (0.01 s) the estimate of the window (5 s) that ends there.
 class SlidingWindowEstimator {
  public:
   SlidingWindowEstimator(const PipelineConfig& config, const ParameterTable& table);
 
-  /// The filters are tuned to this from the first instant on, which is still to come. Of no effect
-  /// when self-tuning is switched off.
+  /// Tunes the filters from the first instant on; call it before push(). Has no effect if
+  /// self-tuning is off.
   void start_tuned(const Tuning& tuning);
-  /// What the filters are tuned to; empty while the noise of an axis is not known.
+  /// Returns the present tuning of the filters; empty while the noise of an axis is unknown.
   std::optional<Tuning> tuning() const;
 
-  /// One instant. Returns the estimate of the window that ends there, or null between hops.
+  /// Takes one instant. Returns the estimate of the window that ends there, or nullptr between
+  /// hops.
   const WindowEstimate* push(const SampleSet& set);
-  /// Before push(): instants between the last one and `set` that are missing, and that
-  /// push_missing() is to be called for. 0 when there is none, and when so many are missing, or the
-  /// clock has gone back, that push() begins anew.
+  /// Returns how many instants are missing between the last one and `set`: call push_missing() once
+  /// for each, then push(). Returns 0 if none is missing, and also if push() must start anew,
+  /// because too many are missing or the clock has gone back.
   int missing_before(const SampleSet& set) const;
-  /// An instant without any sample: rows from before it stay in the windows. No window ends there.
+  /// Takes an instant without any sample. Earlier rows stay in the windows. No window ends there.
   void push_missing();
-  /// The estimate of another window that the last push completed, or null.
+  /// Returns the estimate of another window that the last push completed, or nullptr.
   const WindowEstimate* other() const { return other_; }
-  /// A window that was held back while the filters were not tuned (LateWindows), after a push: to
-  /// be called until it is null. Ends in the past; the main window or another one.
+  /// Returns a window that was held back while the filters were not tuned (LateWindows), or
+  /// nullptr. Call it after a push until it returns nullptr. The window ended in the past; it is
+  /// the main window or another one.
   const WindowEstimate* late();
-  /// The look at the model that the last push completed, or null.
+  /// Returns the model fit that the last push completed, or nullptr.
   const ModelFit* model_fit() const { return model_fit_; }
 
-  /// The parameters that the filters are tuned to now, theta order, SI.
+  /// Returns the parameters that the filters are tuned to, theta order, SI.
   const Eigen::VectorXd& theta0() const { return active_->tuning().theta0(); }
-  /// The noise densities the rows are weighted by, per axis, m/s^2/sqrt(Hz); known: configured or
-  /// measured, of every axis.
+  /// Return the noise densities that weight the rows, per axis, m/s^2/sqrt(Hz), and true if every
+  /// axis is configured or measured.
   const std::vector<double>& noise_density() const { return active_->tuning().noise_density(); }
   bool noise_known() const {
     return self_tuning_ ? self_tuning_->noise_known() : noise_.configured();
@@ -86,7 +85,8 @@ class SlidingWindowEstimator {
   }
 
  private:
-  /// A state of its own: the rest can be read when the long window has another length or is absent.
+  /// Archives the long window separately, so that the rest can be read if the long window has
+  /// another length or is absent.
   template <typename Archive>
   void archive_long(Archive& a) {
     int rows = long_ ? long_->rows() : 0;
@@ -107,24 +107,29 @@ class SlidingWindowEstimator {
     }
   }
   void restart();
-  /// Steps of the common grid from the last instant to `time`, whole.
+  /// Returns the whole steps of the common grid from the last instant to `time`.
   double steps_to(Time time) const;
   void advance(const std::vector<double>& accel, Time time);
-  /// Something has got into the filters that no motion makes of them: everything begins anew.
+  /// Starts everything anew, because the filters hold values that no motion produces.
   void recover();
   void block_closed(Time window_end);
   void go_on();
-  /// The filters have just been found right: windows that have been held back are looked at again.
+  /// Starts to compute the windows that were held back, because the filters have just been found to
+  /// match.
   void look_back();
   void check_tuning();
   void advance_long();
   void hold_bending();
-  /// Of groups: a channel that is gone makes its floor an inner one, one that is back a measured
-  /// one.
+  /// For groups: the floor of a missing channel becomes an inner floor; it becomes a measured one
+  /// when the channel returns.
   void follow_axes(const std::vector<std::uint8_t>& known);
   RowTuning::Known identified() const;
   void regression_exchanged();
-  /// The filters are right, as far as is known.
+  MotionSource& motion_source() {
+    if (deformations_) return *deformations_;
+    return *axis_motion_;
+  }
+  /// Returns true if the filters match, as far as is known.
   bool tuned() const { return self_tuning_ == nullptr || self_tuning_->tuned(); }
   std::unique_ptr<RowTuning> make_tuning(const EstimatorOptions& options) const;
   std::unique_ptr<TunedRegression> make_regression(std::unique_ptr<RowTuning> tuning) const;
@@ -133,10 +138,11 @@ class SlidingWindowEstimator {
 
   PipelineConfig config_;
   EstimatorOptions options_;
-  bool matched_;  ///< the variant
+  bool matched_;  ///< the matched variant
   ParameterTable table_;
   FloorLayout layout_;
-  std::unique_ptr<MotionSource> motion_source_;
+  std::unique_ptr<Deformations> deformations_;  ///< null with groups of stories
+  std::unique_ptr<AxisMotion> axis_motion_;     ///< null without
   DerivativeTriple triple_;
   HighPass high_pass_;
   int blocks_, block_rows_, hop_rows_;
@@ -146,30 +152,30 @@ class SlidingWindowEstimator {
   MotionRing ring_;
   ElementDrift drift_;
   std::unique_ptr<TunedRegression> active_;
-  std::unique_ptr<SelfTuning> self_tuning_;  ///< null when switched off
+  std::unique_ptr<SelfTuning> self_tuning_;  ///< nullptr if self-tuning is off
   WindowSeries series_;
-  std::unique_ptr<LateWindows> late_;     ///< null without self-tuning
-  std::unique_ptr<LongWindow> long_;      ///< null: none
-  std::unique_ptr<HeldBending> bending_;  ///< null where frames do not bend
-  std::unique_ptr<ModelCheck> check_;     ///< null of the paper's variant
-  std::vector<std::uint8_t> shown_;       ///< of check_tuning()
-  std::vector<double> retuned_by_;        ///< of regression_exchanged()
+  std::unique_ptr<LateWindows> late_;     ///< nullptr without self-tuning
+  std::unique_ptr<LongWindow> long_;      ///< nullptr without long windows
+  std::unique_ptr<HeldBending> bending_;  ///< nullptr if frames do not bend
+  std::unique_ptr<ModelCheck> check_;     ///< nullptr in the paper's variant
+  std::vector<std::uint8_t> shown_;       ///< buffer of check_tuning()
+  std::vector<double> retuned_by_;        ///< buffer of regression_exchanged()
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
   const WindowEstimate* other_ = nullptr;
-  const WindowEstimate* late_other_ = nullptr;  ///< to be given by the next late()
-  std::int64_t late_until_ = 0;                 ///< instant of the ring
-  int late_budget_ = 0;                         ///< instants that late() may still go through
+  const WindowEstimate* late_other_ = nullptr;  ///< next result of late()
+  std::int64_t late_until_ = 0;                 ///< instant of the ring where late() ends
+  int late_budget_ = 0;                         ///< instants that late() may still process
   const ModelFit* model_fit_ = nullptr;
-  bool errors_new_ = false;  ///< of the last push
+  bool errors_new_ = false;  ///< by the last push
   std::int64_t expected_index_ = -1, since_hop_ = 0, interruptions_ = 0;
-  Time last_time_{};                           ///< of the last instant
-  std::vector<double> nothing_;                ///< no sample of any axis
-  bool due_ = false;                           ///< the last advance() was a hop
-  std::vector<std::uint8_t> seen_axes_;        ///< of the last instants, of groups
-  std::vector<std::uint8_t> identified_from_;  ///< of follow_axes()
-  int axes_steady_rows_ = 0;                   ///< instants for which they have been these
-  bool sane_ = true;  ///< the newest block of sums; not kept: looked at again
+  Time last_time_{};                           ///< time of the last instant
+  std::vector<double> nothing_;                ///< one NaN per axis: an instant without samples
+  bool due_ = false;                           ///< the last advance() was at a hop
+  std::vector<std::uint8_t> seen_axes_;        ///< axes of the last instants, for groups
+  std::vector<std::uint8_t> identified_from_;  ///< axes that follow_axes() has tuned to
+  int axes_steady_rows_ = 0;                   ///< instants since seen_axes_ changed
+  bool sane_ = true;  ///< the newest block of sums is plausible; checked again after a restart
 };
 
 }  // namespace framewatch::estimator

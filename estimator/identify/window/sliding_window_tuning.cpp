@@ -1,16 +1,17 @@
-// How a SlidingWindowEstimator follows what it identifies: filters are tuned anew, groups of
-// stories become one or part again, and windows that were held back come late.
+// The part of SlidingWindowEstimator that follows the identified parameters: it retunes filters,
+// merges and splits groups of stories, and computes windows that were held back.
 #include <utility>
 
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/window/sliding_window_estimator.h"
-#include "estimator/identify/window/window_rows.h"
+#include "estimator/identify/window/tuned_regression.h"
 
 namespace framewatch::estimator {
 namespace {
 
-/// A channel that is away for less is waited for; for longer, its floor becomes an inner one.
+/// A channel that is missing for less than this is waited for. After that, its floor becomes an
+/// inner floor.
 constexpr double kAxesSteady_s = 2;
 
 }  // namespace
@@ -32,8 +33,8 @@ void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known)
   self_tuning_->begin_axes(*active_, identified_from_, identified());
 }
 
-/// The median of the last windows that showed it, of every parameter, as far as their errors allow
-/// (23).
+/// Returns for every parameter the median of the last windows that showed it, trusted as far as
+/// their errors allow (23).
 RowTuning::Known SlidingWindowEstimator::identified() const {
   RowTuning::Known out{theta0(), {}};
   for (int p = 0; p < table_.size(); ++p) {
@@ -58,7 +59,7 @@ const WindowEstimate* SlidingWindowEstimator::late() {
   TunedRegression* const regression = self_tuning_ ? self_tuning_->lent() : nullptr;
   if (regression == nullptr) return nullptr;
   if (!late_->running()) {
-    // Rows that leave are formed again: they must still be held when they are.
+    // Rows that leave are formed again, so their motion must still be held by then.
     const int until_then = regression->sums().lag() / self_tuning_->work_per_instant() + 2;
     late_->begin(*regression, ring_.begin_after(until_then), late_until_);
   }

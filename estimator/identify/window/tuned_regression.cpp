@@ -1,7 +1,11 @@
 #include "estimator/identify/window/tuned_regression.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "estimator/identify/groups/group_tuning.h"
+#include "estimator/identify/solve/uncertainty.h"
 
 namespace framewatch::estimator {
 
@@ -44,6 +48,57 @@ bool TunedRegression::finish(const MotionRing& ring) {
     delayed_counts = delayed_next_ > counted_from_;
   }
   return counting_ && sums_.maintain(delayed_counts ? delayed_.get() : nullptr);
+}
+
+namespace {
+
+constexpr int kFewestBlocks = 4;  // fewest blocks of another window
+
+}  // namespace
+
+DerivativeTriple triple_of(const EstimatorOptions& o, bool grouped, double advance) {
+  if (grouped) return held_triple(o.rate_hz, advance);
+  return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz)
+                                     : matched_triple(o.rate_hz, advance);
+}
+
+std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o, bool grouped,
+                                         const std::vector<SensorAxis>& axes) {
+  std::vector<DerivativeTriple> triples;
+  for (const SensorAxis& axis : axes) {
+    const double samples = axis.delay * o.rate_hz;
+    triples.push_back(triple_of(o, grouped, samples - std::round(samples)));
+  }
+  return triples;
+}
+
+SensorClock::duration duration_of(double rows, double rate_hz) {
+  return SensorClock::duration(std::llround(rows * 1e6 / rate_hz));
+}
+
+int rows_of(double seconds, double rate) {
+  return std::max(1, static_cast<int>(std::lround(seconds * rate)));
+}
+
+std::vector<int> blocks_of(const std::vector<double>& windows_s, double rate_hz, int block_rows) {
+  std::vector<int> blocks;
+  for (const double s : windows_s)
+    blocks.push_back(
+        std::max(kFewestBlocks, static_cast<int>(std::lround(s * rate_hz / block_rows))));
+  return blocks;
+}
+
+int kept_beside(const EstimatorOptions& o, bool grouped) {
+  const double slowest_s = grouped
+                               ? GroupTuning::kLongestSettle_s
+                               : 3 / (std::min(o.filter_damping, 0.7) * 2 * M_PI * o.high_pass_hz);
+  return rows_of(std::max(o.settle_s, slowest_s), o.rate_hz) + 1;
+}
+
+int longest_window(int block_rows, const std::vector<int>& other_blocks) {
+  int longest = BatchMeans::kBlocks;
+  for (const int blocks : other_blocks) longest = std::max(longest, blocks);
+  return longest * block_rows;
 }
 
 }  // namespace framewatch::estimator

@@ -5,12 +5,17 @@
 #include <memory>
 #include <vector>
 
-#include "estimator/identify/elements/motion_source.h"
+#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/row_filter.h"
 #include "estimator/identify/regressors/row_tuning.h"
 #include "estimator/identify/solve/story_solver.h"
 #include "estimator/identify/solve/uncertainty.h"
+#include "estimator/motion/derivative_triple.h"
+#include "estimator/motion/sample.h"
+#include "estimator/setup/pipeline_config.h"
+
+// The options of a SlidingWindowEstimator in samples: its windows in rows and in blocks of rows,
+// and its derivatives. grouped: groups of stories are identified.
 
 namespace framewatch::estimator {
 
@@ -19,15 +24,15 @@ class MotionRing {
  public:
   MotionRing(const MotionSource& source, int capacity);
   void reset() { next_ = 0; }
-  /// The slot for the next instant; counts as pushed.
+  /// Returns the slot of the next instant and counts it as pushed.
   DeformationSet& push() { return slot(next_++); }
   const DeformationSet& at(std::int64_t instant) const {
     return sets_[static_cast<std::size_t>(instant % capacity())];
   }
-  /// First instant still held, and one past the newest.
+  /// Return the first instant still held, and the one after the newest.
   std::int64_t begin() const { return next_ > capacity() ? next_ - capacity() : 0; }
   std::int64_t end() const { return next_; }
-  /// begin() once `more` instants have been pushed.
+  /// Returns begin() after `more` further instants.
   std::int64_t begin_after(std::int64_t more) const {
     return std::max<std::int64_t>(next_ + more - capacity(), 0);
   }
@@ -45,39 +50,40 @@ class MotionRing {
   std::int64_t next_ = 0;
 };
 
-/// The regression under one tuning: the filters that form the rows entering and leaving the window,
-/// and the window's sum of H^T H. Advances instant by instant through a motion ring, at its own
-/// pace: a new tuning catches up while the old one is in service. Allocates when constructed, never
-/// after.
+/// The regression under one tuning: the filters of the rows that enter and leave the window, and
+/// the window's sums. It advances instant by instant through a motion ring, at its own pace, so
+/// that a new tuning can catch up while the old one is in service. Allocates only in the
+/// constructor.
 class TunedRegression {
  public:
   /// blocks, block_rows, spans: see SlidingGram.
   TunedRegression(std::unique_ptr<RowTuning> tuning, const FloorLayout& layout, int blocks,
                   int block_rows, const std::vector<int>& spans);
 
-  /// Starts anew at an instant of the ring, with the tuning as it is now.
+  /// Starts anew at an instant of the ring with the present tuning.
   void start(std::int64_t instant);
   std::int64_t next() const { return next_; }
-  /// Instants from the start to the first full window of every length.
+  /// Returns the instants from the start to the first full window of every length.
   int warm_up() const { return tuning_->start_rows() + sums_.longest_rows(); }
 
-  /// Adds instant next(); the window's sum is ready for the solver until finish().
+  /// Adds instant next(). The window's sum is then ready for the solver, until finish().
   void advance(const MotionRing& ring);
-  /// Whether finish() will close a block.
+  /// Returns true if finish() will close a block.
   bool closes_block() const { return counting_ && sums_.block_full(); }
-  /// Prepares the following instant; true when a block closed.
+  /// Prepares the next instant. Returns true if a block closed.
   bool finish(const MotionRing& ring);
 
-  /// The tuning changes: rows and sums are of no use, and no state, until start().
+  /// Stops the regression while its tuning changes: rows and sums are invalid, and not part of the
+  /// state, until start().
   void rest() { resting_ = true; }
   bool resting() const { return resting_; }
 
   bool full() const { return counting_ && sums_.full(); }
-  /// Blocks have closed that are enough for standard errors.
+  /// Returns true if enough blocks have closed for standard errors.
   bool suffices() const { return counting_ && sums_.closed() >= BatchMeans::kFewest; }
   const RowTuning& tuning() const { return *tuning_; }
-  /// After other parameters every part must be tuned, and start() called, before the regression is
-  /// used again.
+  /// Returns the tuning. After a change of its parameters, tune every part and call start() before
+  /// using the regression.
   RowTuning& tuning() { return *tuning_; }
   SlidingGram& sums() { return sums_; }
   const RowFilter& rows() const { return *entering_; }
@@ -99,5 +105,23 @@ class TunedRegression {
   std::int64_t next_ = 0, delayed_next_ = 0, counted_from_ = 0;
   bool counting_ = false, resting_ = false;
 };
+
+/// Returns the triple of the variant. advance: in samples.
+DerivativeTriple triple_of(const EstimatorOptions& o, bool grouped, double advance);
+/// Returns one triple per axis. Acquisition subtracts whole samples of a delay from the stamps; the
+/// triple undoes the rest.
+std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o, bool grouped,
+                                         const std::vector<SensorAxis>& axes);
+
+int rows_of(double seconds, double rate);
+SensorClock::duration duration_of(double rows, double rate_hz);
+/// Returns the lengths of the other windows in blocks.
+std::vector<int> blocks_of(const std::vector<double>& windows_s, double rate_hz, int block_rows);
+/// Returns the instants of motion that are kept in addition to the longest window. In the paper's
+/// variant it is the settling time of the slowest possible row filter, otherwise the time from
+/// which windows are computed late.
+int kept_beside(const EstimatorOptions& o, bool grouped);
+/// Returns the rows of the longest window, the main window included.
+int longest_window(int block_rows, const std::vector<int>& other_blocks);
 
 }  // namespace framewatch::estimator

@@ -9,14 +9,14 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kInflation = 4;  // information is overstated by correlated residuals
-/// Frames of a direction whose frequencies differ by less than this cannot be told from a plan that
-/// does not shear its floors.
+constexpr double kInflation = 4;  // correlated residuals overstate the information by this factor
+/// Relative difference below which the frequencies of a direction's frames are equal within a plan
+/// that does not shear its floors.
 constexpr double kSymmetric = 0.02;
-constexpr double kHeld = 0.01;  // relative width of the prior of what is held
+constexpr double kHeld = 0.01;  // relative width of the prior of a held unknown
 constexpr double kRounding = 1e-12;
-constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
-/// Of groups, whose residual is the model's as a rule: known noise is no higher than that.
+constexpr int kFirstPasses = 5;  // until the noise level no longer changes
+/// Largest level of known noise in groups, whose residual usually comes from the model.
 constexpr double kMaxOfKnownNoise = 2;
 
 }  // namespace
@@ -99,7 +99,7 @@ void WindowSolution::solve(const WindowParts& sums, const RowFilter& rows, const
   overcompensated_ = compensation > 0 && residual < -kRounding * solver_.response_energy();
   residual_energy_ = std::max(residual, 0.0);
   noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
-  if (!std::isfinite(noise_scale_)) noise_scale_ = noise_level_ = 0;  // or it would stay for ever
+  if (!std::isfinite(noise_scale_)) noise_scale_ = noise_level_ = 0;  // or it would never recover
   if (closes_block && !overcompensated_) noise_level_ = noise_scale_;
   if (closes_block) misfit_.update(sums, solver_.solution(), noise_, trust.noise_known);
 }
@@ -139,7 +139,7 @@ bool WindowSolution::published(int unknown) const {
 }
 
 bool WindowSolution::place_known(int unknown) const {
-  if (layout_.grouped()) return true;  // its floor becomes an inner one
+  if (layout_.grouped()) return true;  // its floor becomes an inner floor
   const int frames = layout_.frames();
   const int floor = unknown / layout_.own();
   const int position = unknown % layout_.own();
@@ -153,8 +153,7 @@ bool WindowSolution::place_known(int unknown) const {
   return true;
 }
 
-/// Whether nothing can be said of the floor's elements because a motion around it is not known:
-/// without it no equation of the floor is left.
+/// Returns true if no equation of the floor is left, because a motion around it is unknown.
 bool WindowSolution::rowless(int floor) const {
   if (!solved_ || warm_[static_cast<std::size_t>(floor)] != kRowless) return false;
   if (layout_.grouped())
@@ -171,8 +170,8 @@ void WindowSolution::see(const std::vector<std::uint8_t>& known) {
     place_known_[u] = place_known(static_cast<int>(u)) ? 1 : 0;
 }
 
-/// Whether, in every direction that moves, the frames of each story are alike in stiffness over
-/// mass as far as their errors tell: then no floor shears, however flexible it is.
+/// Returns true if, in every direction that moves, the frames of each story have equal stiffness
+/// over mass within their errors. Then no floor shears, however flexible it is.
 bool WindowSolution::looks_symmetric(const WindowEstimate& estimate) const {
   for (int story = 1; story <= structure_.stories; ++story) {
     for (const Direction direction : {Direction::x, Direction::y}) {

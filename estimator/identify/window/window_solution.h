@@ -7,19 +7,18 @@
 
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/row_filter.h"
-#include "estimator/identify/solve/model_misfit.h"
+#include "estimator/identify/regressors/row_tuning.h"
 #include "estimator/identify/solve/noise_compensation.h"
 #include "estimator/identify/solve/story_solver.h"
 #include "estimator/identify/solve/uncertainty.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 
-/// The solution of one window: its normal equations, from which the expected sensor noise is
-/// subtracted, solved, with standard errors, and a decision on every parameter whether it is
-/// published. docs/equations.md (18), (21), (22).
+/// The solution of one window. It solves the normal equations, minus the expected sensor noise,
+/// computes standard errors, and decides for every parameter if it is published. docs/equations.md
+/// (18), (21), (22).
 class WindowSolution {
  public:
   /// compensation: share of the noise, see NoiseCompensation. warm: share of the window in which a
@@ -28,24 +27,24 @@ class WindowSolution {
                  const EstimatorOptions& options, double compensation = kCompensatedShare,
                  double warm = 0.5);
 
-  /// The unknown is held at `ratio` of theta0, known from elsewhere within a relative standard
-  /// error that counts in those of the others.
+  /// Holds the unknown at `ratio` of theta0, which is known within a relative standard error. That
+  /// error counts in the errors of the other unknowns.
   void hold(int unknown, double ratio, double std_error);
-  /// After an interruption: errors and noise level are unknown again.
+  /// Resets errors and noise level to unknown after an interruption.
   void restart();
-  /// What the rows of a tuning allow. regularise: noise may be subtracted and the prior be added;
-  /// noise_known: it is configured or measured, of every axis.
+  /// The corrections that the rows of a tuning permit. regularise: noise may be subtracted and the
+  /// prior added. noise_known: the noise of every axis is configured or measured.
   struct Trust {
     bool regularise, noise_known;
   };
-  /// The level of the noise is that of the last solution that closed a block: a window's numbers do
-  /// not depend on how often windows are asked for.
+  /// Solves a window. The noise level is that of the last solution that closed a block, so a
+  /// window's values do not depend on how often windows are requested.
   void solve(const WindowParts& sums, const RowFilter& rows, const Trust& trust, bool closes_block);
 
-  /// A pass of standard errors, spread over instants (BatchMeans). fit: the solution that fits
-  /// BatchMeans::kBlocks blocks, this one or another. Begins nothing before both have solved these
-  /// rows: the block that fills a window for the first time closes before that, and errors would be
-  /// zero.
+  /// Begins a pass of standard errors, spread over instants (BatchMeans). fit: the solution that
+  /// fits BatchMeans::kBlocks blocks, this one or another. Does nothing until both have solved
+  /// these rows: the block that fills a window for the first time closes earlier, and errors would
+  /// be zero.
   template <typename Sums>
   void begin_errors(const Sums& all, const WindowSolution& fit) {
     if (fresh_ || fit.fresh_) return;
@@ -53,7 +52,7 @@ class WindowSolution {
     errors_.begin(all, solver_, of, prior_, doubt_, noise_, noise_scale_);
   }
   bool advance_errors(int steps);
-  /// The next solution is of other rows: a pass under way is abandoned, errors stay.
+  /// Abandons a pass in progress, because the next solution comes from other rows. Errors remain.
   void retuned() {
     errors_.cancel();
     fresh_ = true;
@@ -61,31 +60,33 @@ class WindowSolution {
   int error_steps() const { return errors_.steps(); }
   const std::vector<double>& std_error() const { return errors_.std_error(); }
   void rescale(int unknown, double factor) { errors_.rescale(unknown, factor); }
-  /// ModelMisfit of the last closed block, NaN where the window does not show the unknown.
+  /// Returns ModelMisfit::misfit() of the last closed block; NaN if the window does not show the
+  /// unknown.
   double misfit(int unknown) const;
-  /// ModelMisfit::error(), relative to the solution; of the last pass of errors.
+  /// Returns ModelMisfit::error() of the last pass, relative to the solution.
   double misfit_error(int unknown) const;
-  /// Whose solution an unknown has: mostly its own.
+  /// Returns the unknown whose solution this one takes, usually itself.
   int stands_for(int unknown) const {
     return same_as_.empty() ? unknown : same_as_[static_cast<std::size_t>(unknown)];
   }
 
   const StorySolver& solver() const { return solver_; }
   StorySolver& solver() { return solver_; }
-  /// Whether the window's motion shows the unknown above the sensors' noise.
+  /// Returns true if the window's motion shows the unknown above the sensors' noise.
   bool shown(int unknown) const;
-  /// Whether the floor's rows fill enough of the window.
+  /// Returns true if the floor's rows fill enough of the window.
   bool warm(int floor) const { return warm_[static_cast<std::size_t>(floor)] == kWarm; }
 
-  /// What the decision on a parameter depends on besides the numbers.
+  /// The conditions, besides the numbers, that decide if a parameter is published.
   struct Situation {
-    const Eigen::VectorXd* theta0;           ///< what x is relative to, theta order
-    const std::vector<std::uint8_t>* known;  ///< places with a working sensor, DeformationSet
-    bool tuned;                              ///< the filters have been found right
-    /// That of the window whose blocks standard errors come from, when it is another one.
+    const Eigen::VectorXd* theta0;           ///< the parameters that x is relative to, theta order
+    const std::vector<std::uint8_t>* known;  ///< places with a working sensor, as in DeformationSet
+    bool tuned;                              ///< the filters have been found to match
+    /// The window whose blocks give the standard errors, if it is another one.
     const WindowSolution* errors_of = nullptr;
   };
-  /// Fills in what follows from this window; not times, boxplots and last values.
+  /// Fills in everything that follows from this window. Times, boxplots and last values are left to
+  /// the caller.
   void fill(const Situation& situation, WindowEstimate& estimate);
 
   /// rows, sums: of the active regression.
@@ -109,15 +110,15 @@ class WindowSolution {
   struct Unknown {
     int parameter;
     ParameterKind kind;
-    double prior;        ///< its weight over the level of the noise
-    double error_limit;  ///< relative standard error above which it is not published
-    bool held = false;   ///< hold(): whatever the Trust
+    double prior;        ///< weight of the prior over the noise level
+    double error_limit;  ///< relative standard error above which the parameter is not published
+    bool held = false;   ///< hold() applies whatever the Trust
   };
   bool place_known(int unknown) const;
   bool rowless(int floor) const;
   void see(const std::vector<std::uint8_t>& known);
   bool published(int unknown) const;
-  /// Of the noise that motion must stand out of, over what the tuning assumes.
+  /// Returns the noise level that motion must exceed, over the level that the tuning assumes.
   double gate_level() const;
   bool looks_symmetric(const WindowEstimate& estimate) const;
 
@@ -130,26 +131,26 @@ class WindowSolution {
   double warm_share_;
   StorySolver solver_;
   BatchMeans errors_;
-  ModelMisfit misfit_;                ///< of the last closed block
+  ModelMisfit misfit_;                ///< misfit of the last closed block
   std::vector<double> misfit_error_;  ///< internal order, relative to theta0
   std::vector<double> prior_;
-  std::vector<double> centre_, doubt_;  ///< of the prior: hold()
-  std::vector<int> same_as_;            ///< FloorRows::same_as of a building of groups
-  std::vector<double> share_error_;     ///< FloorRows::share_error, likewise
-  /// Of every floor: kWarm when its rows fill most of the window, kRowless when it has none there.
+  std::vector<double> centre_, doubt_;  ///< center and doubt of the prior, for hold()
+  std::vector<int> same_as_;            ///< FloorRows::same_as of a building in groups
+  std::vector<double> share_error_;     ///< FloorRows::share_error of a building in groups
+  /// By floor: kWarm if its rows fill most of the window, kRowless if it has no rows there.
   static constexpr std::uint8_t kFilling = 0, kWarm = 1, kRowless = 2;
   std::vector<std::uint8_t> warm_;
-  std::vector<std::uint8_t> known_;        ///< Situation::known when last seen
-  std::vector<std::uint8_t> place_known_;  ///< of every unknown: all motion it needs
+  std::vector<std::uint8_t> known_;        ///< last Situation::known
+  std::vector<std::uint8_t> place_known_;  ///< by unknown: all motion that it needs is known
   bool errors_known_ = false;
   bool solved_ = false;
   bool noise_known_ = false;  ///< Trust::noise_known of the last solution
-  bool fresh_ = true;         ///< the noise level is that of other rows or of none
-  /// More noise was subtracted than the window holds: its numbers mean nothing.
+  bool fresh_ = true;         ///< the noise level belongs to other rows or is unknown
+  /// More noise was subtracted than the window holds, so its values are invalid.
   bool overcompensated_ = false;
   double residual_energy_ = 0;
-  double noise_scale_ = 0;  ///< residual energy over what sensor noise explains
-  double noise_level_ = 0;  ///< the same of the last closed block
+  double noise_scale_ = 0;  ///< residual energy over the part that sensor noise explains
+  double noise_level_ = 0;  ///< noise_scale_ of the last closed block
 };
 
 }  // namespace framewatch::estimator

@@ -20,7 +20,7 @@ double moving(int t, int axis) {
 }
 
 struct Guarded {
-  std::vector<std::vector<bool>> taken_out;  ///< instants x axes
+  std::vector<std::vector<bool>> taken_out;  ///< samples removed, instants x axes
   std::vector<std::int64_t> stuck, clipped, missing;
 };
 const std::vector<std::int64_t> kNone = {0, 0, 0};
@@ -87,8 +87,7 @@ TEST(AxisGuard, ADirectionWithoutMotionIsNotStuck) {
   EXPECT_EQ(r.stuck, (std::vector<std::int64_t>{0, 0, 0, 0}));
 }
 
-/// Motion in the middle of a record that is zero before and after, with numbers as fine as a
-/// double.
+/// Motion in the middle of a record that is zero before and after, with the resolution of a double.
 double processed(int t, int axis, int from, int to) {
   if (t < from || t >= to) return 0;
   const double rise = std::sin(M_PI * (t - from) / (to - from));
@@ -127,8 +126,8 @@ TEST(AxisGuard, ZerosOfOneAxisInStrongMotionAreStuck) {
 }
 
 TEST(AxisGuard, ASensorCoarserThanTheQuietMotionIsNotStuck) {
-  // Strong motion until 600, then what moves the fine sensors by 3 of their steps, the coarse one
-  // by a fiftieth of its own.
+  // Strong motion until 600. Then the motion is 3 steps of the fine sensors and a fiftieth of the
+  // coarse one's step.
   const double coarse = 0.05;
   const auto value = [](int t, int a) {
     const double amplitude = t < 600 ? 1.0 : 0.008;
@@ -178,7 +177,7 @@ TEST(AxisGuard, TakesOutWhatTouchesTheConfiguredRangeAndItsNeighbours) {
 TEST(AxisGuard, LearnsARangeNobodyConfigured) {
   const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes),
                         [](int t, int a) { return std::min(moving(t, a), a == 0 ? 1.2 : 9.0); });
-  for (int t = kInstants / 2; t < kInstants; ++t) {  // its resolution must be seen first
+  for (int t = kInstants / 2; t < kInstants; ++t) {  // the guard must see its resolution first
     if (moving(t, 0) >= 1.2) {
       EXPECT_TRUE(r.taken_out[static_cast<std::size_t>(t)][0]) << t;
     }

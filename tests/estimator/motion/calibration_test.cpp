@@ -1,4 +1,4 @@
-#include "estimator/motion/calibration.h"
+#include "estimator/motion/acquisition.h"
 
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@ namespace calibration_test {
 
 constexpr double kGravity = 9.80665;
 constexpr double kRounding = 1e-12;
-constexpr double kAlong = 0.7, kAcross = -1.3;  // true motion of the place, m/s^2
+constexpr double kAlong = 0.7, kAcross = -1.3;  // true motion at the sensor, m/s^2
 
 SensorAxis axis(Direction direction) {
   SensorAxis a;

@@ -11,10 +11,10 @@ namespace derivative_triple_test {
 
 using Complex = std::complex<double>;
 
-/// Limits stated by the header: relative error up to a fifth of the rate.
+/// The limit that the header states: relative error up to a fifth of the rate.
 constexpr double kBandLimit = 1e-4;
 
-/// Frequency response of taps (newest first), `delay` samples taken out.
+/// Returns the frequency response of taps (newest first) without the delay of `delay` samples.
 Complex response(const std::vector<double>& taps, double w, double delay) {
   Complex sum = 0;
   for (std::size_t k = 0; k < taps.size(); ++k)
@@ -22,7 +22,7 @@ Complex response(const std::vector<double>& taps, double w, double delay) {
   return sum;
 }
 
-/// Worst relative error of p' and p'' against p, from 0.05 Hz to highest_hz.
+/// Returns the largest relative error of p' and p'' against p, from 0.05 Hz to highest_hz.
 double worst_error(const DerivativeTriple& t, double rate_hz, double highest_hz) {
   double worst = 0;
   for (double hz = 0.05; hz <= highest_hz; hz += 0.05) {
@@ -66,7 +66,7 @@ TEST(DerivativeTriple, ConstantsAndRampsAreExact) {
   const DerivativeTriple t = matched_triple(rate);
   double c1 = 0, c2 = 0, ramp0 = 0, ramp1 = 0, ramp2 = 0;
   for (std::size_t k = 0; k < t.value.size(); ++k) {
-    const double x = (t.delay - static_cast<double>(k)) / rate;  // time about the centre
+    const double x = (t.delay - static_cast<double>(k)) / rate;  // time about the center
     c1 += t.first[k];
     c2 += t.second[k];
     ramp0 += t.value[k] * x;
@@ -97,7 +97,7 @@ TEST(DerivativeTriple, AdvanceUndoesAFractionOfASample) {
   }
 }
 
-/// Taps applied to x at i.
+/// Returns the taps applied to x at i.
 double applied(const std::vector<double>& taps, const std::vector<double>& x, std::size_t i) {
   double sum = 0;
   for (std::size_t k = 0; k < taps.size(); ++k) sum += taps[k] * x[i - k];

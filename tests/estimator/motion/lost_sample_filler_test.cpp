@@ -1,4 +1,4 @@
-#include "estimator/motion/lost_sample_filler.h"
+#include "estimator/motion/acquisition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ SampleSet set_of(std::int64_t index, std::vector<double> accel) {
   return {from_microseconds(10000 * index), index, std::move(accel)};
 }
 
-/// Everything the filler gives out for these sets, in order.
+/// Returns every set that the filler returns for these sets, in order.
 std::vector<SampleSet> run(LostSampleFiller& filler, const std::vector<SampleSet>& sets) {
   std::vector<SampleSet> out;
   for (const SampleSet& s : sets)
@@ -55,7 +55,7 @@ TEST(LostSampleFiller, SingleLossIsTheCubicThroughItsNeighbours) {
   EXPECT_EQ(filler.repaired(), (std::vector<std::int64_t>{1, 0}));
 }
 
-/// Losses at the given instants of 20: which remain.
+/// Returns the losses that remain of those at the given instants of 20.
 std::vector<int> left_after(const std::vector<int>& lost, bool repair = true,
                             int interrupted_after = -1) {
   LostSampleFiller filler({static_cast<std::uint8_t>(repair)});

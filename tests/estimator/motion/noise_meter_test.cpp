@@ -12,7 +12,7 @@ namespace noise_meter_test {
 
 constexpr double kRate_hz = 100;
 constexpr double kDensity = 2e-4;  // m/s^2/sqrt(Hz)
-/// Standard deviation of a mean of 125 squares is 13 %, of its root 6 %: three of them.
+/// Three standard deviations: a mean of 125 squares has 13 %, its root 6 %.
 constexpr double kTolerance = 0.2;
 
 TEST(NoiseMeter, SeesWhiteNoiseUnderAThousandTimesStrongerMotion) {

@@ -1,4 +1,4 @@
-#include "estimator/motion/oscillator_section.h"
+#include "estimator/motion/derivative_triple.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ constexpr double kRate = 100, kCorner = 0.5, kDamping = 0.35;
 constexpr double kIntegratorError = 0.012;  // from ten times the corner on
 constexpr double kBalance = 2e-4;  // residual of the equation of motion over its largest term
 
-/// The recursion and the numerator that the derivative triple holds.
+/// Returns the response of the recursion times the numerator, which the derivative triple holds.
 std::complex<double> response(const OscillatorSection& section, double hz, double rate_hz) {
   const std::complex<double> z = std::polar(1.0, -2 * M_PI * hz / rate_hz);
   return section.gain * (1.0 + z) * (1.0 + z) / 4.0 / (1.0 + section.a1 * z + section.a2 * z * z);
@@ -33,7 +33,7 @@ struct Section {
 };
 
 TEST(OscillatorSection, IntegratesTwiceAboveItsCorner) {
-  constexpr double kFineRate = 1000;  // where the bilinear transform does not show
+  constexpr double kFineRate = 1000;  // where the error of the bilinear transform is negligible
   const OscillatorSection section(kCorner, 1e-3, kFineRate);
   const double w = 2 * M_PI * kCorner;
   for (const double hz : {10 * kCorner, 20 * kCorner}) {
@@ -53,8 +53,8 @@ TEST(OscillatorSection, DoesNotAccumulateBelowItsCorner) {
   EXPECT_LT(std::abs(after), 1e-12) << "a bias that has gone is forgotten";
 }
 
-/// m a + c v + k d = 0 of an oscillator that swings freely, its accelerometer biased: the equation
-/// still holds between the three outputs, at a corner below the motion, at it and above it.
+/// A freely swinging oscillator with a biased accelerometer: m a + c v + k d = 0 holds between the
+/// three outputs, with the corner below, at and above the motion.
 TEST(OscillatorSection, KeepsTheEquationOfMotionWhateverTheCorner) {
   const double w = 2 * M_PI * 2, h = 0.005, bias = 3;
   const std::complex<double> pole(-h * w, w * std::sqrt(1 - h * h));

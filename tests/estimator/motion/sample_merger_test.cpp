@@ -11,7 +11,7 @@ namespace sample_merger_test {
 constexpr std::int64_t kStep = 10000;  // us at 100 Hz
 constexpr std::int64_t kStart = 1'000'000'000;
 
-/// A merger of two axes with 0.05 s of lateness (5 instants), and what it gave out.
+/// A merger of two axes with 0.05 s of lateness (5 instants), and the sets it returned.
 struct Bench {
   explicit Bench(int axes = 2) : merger(axes, 100, 0.05) {}
   void push_at(std::int64_t us, int axis, double value) {
@@ -76,7 +76,7 @@ TEST(SampleMerger, SilentAxisHoldsUpOnceAndRecovers) {
   EXPECT_EQ(b.out.size(), 18u);
   EXPECT_TRUE(std::isnan(b.out[17].accel[1]));
   EXPECT_EQ(b.counters(1).missing, 8);
-  b.push(18, 1, 5);  // it is back
+  b.push(18, 1, 5);  // it delivers again
   b.push(18, 0, 6);
   b.push(19, 0, 7);
   EXPECT_EQ(b.out.size(), 19u) << "and is waited for again";
@@ -126,7 +126,7 @@ TEST(SampleMerger, TimeRunningBackwardsAnchorsAnew) {
   Bench b;
   for (int i = 0; i < 20; ++i) b.both(1000 + i);
   for (int i = 0; i < 20; ++i) b.both(i);
-  const int kMax = 10;  // samples that may be lost before the new time is believed
+  const int kMax = 10;  // samples that may be lost before the new time is accepted
   EXPECT_GE(b.out.size(), 40u - kMax / 2);
   EXPECT_LE(b.counters(0).rejected + b.counters(1).rejected, kMax);
   for (std::size_t i = 1; i < b.out.size(); ++i) EXPECT_GT(b.out[i].index, b.out[i - 1].index);

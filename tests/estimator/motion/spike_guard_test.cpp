@@ -1,4 +1,4 @@
-#include "estimator/motion/spike_guard.h"
+#include "estimator/motion/axis_guard.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/motion/axis_guard.h"
-#include "estimator/motion/sample_bound.h"
+#include "estimator/motion/acquisition.h"
 
 namespace framewatch::estimator {
 namespace spike_guard_test {
@@ -24,7 +23,7 @@ constexpr int kAt = 700;
 
 using Places = std::set<std::pair<int, int>>;  // instant, axis
 
-/// Noise that is the same in every test, and what the test adds.
+/// The results for noise, equal in every test, plus the motion that the test adds.
 struct Guarded {
   Places absurd;
   std::vector<std::int64_t> counted;
@@ -96,7 +95,7 @@ TEST(SpikeGuard, AnImpactThatRingsDownIsSound) {
 }
 
 TEST(SpikeGuard, APulseThatRisesOverSomeSamplesIsSound) {
-  // Against a stop, on one floor of a moving building: practice, case-040.
+  // An impact against a stop on one floor of a moving building (case-040).
   const std::vector<double> rise{0.3, 1.2, 3.2, 4.8, 5.9, 6.5, 6.4, 5.8, 4.5, 3.0, 1.5, 0.5};
   const auto pulse = [&](int t, int axis) {
     const auto since = static_cast<std::size_t>(std::max(0, t - kAt));
@@ -107,7 +106,7 @@ TEST(SpikeGuard, APulseThatRisesOverSomeSamplesIsSound) {
 }
 
 TEST(SpikeGuard, AJerkOfAShakingTableIsSound) {
-  // Of a real one, at the base alone: mini_shake_table_xsens_2025, Northridge.
+  // A real impact at the base alone: mini_shake_table_xsens_2025, Northridge.
   const std::vector<double> jerk{0.575, 3.336, 0.0001, -0.320, 2.086, -0.712, -0.606, -0.011};
   EXPECT_TRUE(run([&](int t, int axis) {
                 const auto since = static_cast<std::size_t>(std::max(0, t - kAt));
@@ -135,7 +134,7 @@ TEST(SpikeGuard, AnAxisAloneIsNotContradicted) {
 }
 
 TEST(SpikeGuard, StepsOfACoarseSensorAreSound) {
-  // Resolution 40 times the noise: mostly it stands still, then goes one step and back.
+  // With a resolution of 40 times the noise, the value mostly stays, then goes one step and back.
   constexpr double kStep = 40 * kNoise;
   const auto toggles = [](int t, int axis) {
     return (t + 13 * axis) % 97 == 0 || (t > 900 && axis == 1 && t % 3 == 0) ? kStep : 0;

@@ -12,7 +12,7 @@ namespace svd_denoise_test {
 constexpr double kRounding = 1e-12;
 constexpr SvdDenoising kPaper;
 
-/// A motion that repeats every interval: one singular value.
+/// A motion that repeats in every interval has one singular value.
 Eigen::VectorXd periodic(Eigen::Index size) {
   Eigen::VectorXd out(size);
   for (Eigen::Index i = 0; i < size; ++i)
@@ -39,7 +39,7 @@ TEST(SvdDenoise, LeavesAMotionOfOneSingularValueAlone) {
 }
 
 TEST(SvdDenoise, TakesMostOfTheNoiseOffSuchAMotion) {
-  // One of five singular directions stays: a fifth of the noise's energy, and a little more.
+  // One of five singular directions remains: a fifth of the noise's energy, and slightly more.
   constexpr double kLeft = 0.5;
   const Eigen::VectorXd motion = periodic(1000);
   const Eigen::VectorXd noisy = motion + noise(1000, 0.1);

@@ -16,12 +16,13 @@ namespace kernels_bins_test {
 using kernels::kBins;
 constexpr int kNumber = 2 * kBins;
 
-/// Each row has its own axes: those far from the diagonal are zero where `band` is not zero.
+/// Each row has its own axes. With a `band` other than zero, entries far from the diagonal are
+/// zero.
 struct Case {
   int n, axes;
   std::vector<double> d, noise;
-  std::vector<int> first, end;        ///< of the axes
-  std::vector<int> covariance_first;  ///< of the covariance's columns
+  std::vector<int> first, end;        ///< range of the row's axes
+  std::vector<int> covariance_first;  ///< first column of the covariance
 
   Case(int equations, int sensors, int band = 0) : n(equations), axes(sensors) {
     Random random(static_cast<std::uint64_t>(100 * equations + sensors));

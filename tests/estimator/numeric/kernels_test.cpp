@@ -239,7 +239,7 @@ TEST(Kernels, SubtractProductIsThatOfTheWholeMatrix) {
   }
 }
 
-/// Everything the kernels compute from the same numbers, one value after the other.
+/// Returns all results of the kernels for the same numbers, one after the other.
 std::vector<double> all_results(const kernels::Table& table) {
   std::vector<double> out;
   const auto keep = [&](const std::vector<double>& v) {
@@ -297,7 +297,7 @@ std::vector<double> all_results(const kernels::Table& table) {
   return out;
 }
 
-/// The stated bound on the difference between instruction sets is zero.
+/// All instruction sets must give the same bits, as stated in kernels.h.
 TEST(Kernels, EveryInstructionSetGivesTheSameBits) {
   const std::vector<double> wanted = all_results(*kernels::portable());
   int others = 0;

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimator/motion/sample_bound.h"
+#include "estimator/motion/acquisition.h"
 #include "estimator/pipeline/pipeline.h"
 #include "tests/support/paper_buildings.h"
 #include "tests/support/pipeline_run.h"
@@ -69,11 +69,11 @@ class AbsurdSamples : public testing::TestWithParam<bool> {
     const auto keep = [&](const WindowEstimate& e) {
       out.estimates[{e.window, to_microseconds(e.end)}] = e;
     };
-    Pipeline pipeline(config_, keep, keep);
+    Pipeline pipeline(config_);
     for (int t = 0; t < accel.rows(); ++t)
       for (int axis = 0; axis < accel.cols(); ++axis)
-        pipeline.push(test::sample_at(accel, kRate_hz, t, axis));
-    pipeline.finish();
+        each_window(pipeline.push(test::sample_at(accel, kRate_hz, t, axis)), keep);
+    each_window(pipeline.finish(), keep);
     out.counters = pipeline.counters();
     return out;
   }
@@ -221,14 +221,15 @@ TEST_P(AbsurdSamples, StampsOfOneChannelSilenceNothingForLong) {
   shake(static_cast<double>(attacks.size()) * kApart_s);
   std::vector<double> shown_s(clean_.estimates.begin()->second.value.size(), kFirst / kRate_hz);
   double silence = 0;
-  Pipeline pipeline(config_, [&](const WindowEstimate& e) {
+  const auto take = [&](const WindowEstimate& e) {
     const double end_s = 1e-6 * static_cast<double>(to_microseconds(e.end));
     const auto clean = clean_.estimates.lower_bound({0, to_microseconds(e.end) - 6000});
     for (std::size_t p = 0; p < shown_s.size(); ++p) {
       if (std::isfinite(e.value[p]) || !std::isfinite(clean->second.value[p])) shown_s[p] = end_s;
       silence = std::max(silence, end_s - shown_s[p]);
     }
-  });
+  };
+  Pipeline pipeline(config_);
   for (int t = 0; t < accel_.rows(); ++t)
     for (int axis = 0; axis < accel_.cols(); ++axis) {
       AccelSample sample = test::sample_at(accel_, kRate_hz, t, axis);
@@ -238,9 +239,9 @@ TEST_P(AbsurdSamples, StampsOfOneChannelSilenceNothingForLong) {
         if (since % (kApart_s * static_cast<int>(kRate_hz)) < samples)
           sample.time += SensorClock::duration(std::llround(1e6 * ahead_s));
       }
-      pipeline.push(sample);
+      each_main_window(pipeline.push(sample), take);
     }
-  pipeline.finish();
+  each_main_window(pipeline.finish(), take);
   EXPECT_LE(silence, kMaxSilence_s);
   const AxisCounters c = pipeline.counters().axes[kAxis];
   EXPECT_GT(c.rejected + c.late, 500);

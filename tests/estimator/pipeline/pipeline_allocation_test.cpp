@@ -40,14 +40,16 @@ struct Watched {
 Watched watch(const PipelineConfig& config, const Eigen::MatrixXd& accel,
               const test::Delivered& delivered = {}) {
   Watched out;
-  Pipeline pipeline(config, [&](const WindowEstimate& e) {
+  const auto take = [&](const WindowEstimate& e) {
     out.values += e.status == WindowStatus::valid ? 1 : 0;
-  });
+  };
+  Pipeline pipeline(config);
   const long before = allocations;
   for (int t = 0; t < accel.rows(); ++t)
     for (int axis = 0; axis < accel.cols(); ++axis)
-      if (!delivered || delivered(t, axis)) pipeline.push(test::sample_at(accel, 100, t, axis));
-  pipeline.finish();
+      if (!delivered || delivered(t, axis))
+        each_main_window(pipeline.push(test::sample_at(accel, 100, t, axis)), take);
+  each_main_window(pipeline.finish(), take);
   out.allocations = allocations - before;
   out.counters = pipeline.counters();
   return out;

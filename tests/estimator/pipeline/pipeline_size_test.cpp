@@ -73,7 +73,7 @@ TEST_P(PipelineSizeOf, IsWhatAPipelineTakes) {
   const PipelineConfig config = config_of(GetParam());
   for (const std::string& problem : problems(config)) ADD_FAILURE() << problem;
   const std::size_t before = allocated_bytes();
-  const Pipeline pipeline(config, [](const WindowEstimate&) {});
+  const Pipeline pipeline(config);
   const double taken = static_cast<double>(allocated_bytes() - before);
   const PipelineSize size = pipeline_size(config);
   EXPECT_NEAR(size.bytes() / taken, 1, kOff)

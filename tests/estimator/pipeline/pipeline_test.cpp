@@ -114,14 +114,17 @@ TEST(Pipeline, WindowsHeldBackWhileTuningComeLate) {
   PipelineConfig config = small_config();
   config.design *= 0.3;
   std::vector<WindowEstimate> given, late;
-  Pipeline pipeline(config, [&](const WindowEstimate& e) { given.push_back(e); });
-  pipeline.on_late([&](const WindowEstimate& e) {
-    if (e.window == 0) late.push_back(e);
-  });
+  Pipeline pipeline(config);
+  const auto take = [&](Pipeline::Results&& results) {
+    for (const PipelineResult& r : results) {
+      if (r.estimate != nullptr) given.push_back(*r.estimate);
+      if (r.late != nullptr && r.late->window == 0) late.push_back(*r.late);
+    }
+  };
   for (int t = 0; t < small_accel().rows(); ++t)
     for (int a = 0; a < small_accel().cols(); ++a)
-      pipeline.push(test::sample_at(small_accel(), 100, t, a));
-  pipeline.finish();
+      take(pipeline.push(test::sample_at(small_accel(), 100, t, a)));
+  take(pipeline.finish());
   const auto first = std::find_if(given.begin(), given.end(), any_value);
   ASSERT_NE(first, given.end());
   ASSERT_FALSE(late.empty());

@@ -47,7 +47,7 @@ struct Seen {
 Seen run(const std::optional<Tuning>& start) {
   const Tower& t = tower();
   Seen seen;
-  Pipeline pipeline(t.config, [&](const WindowEstimate& e) {
+  const auto take = [&](const WindowEstimate& e) {
     if (e.status == WindowStatus::valid && seen.first_s == 0)
       seen.first_s = static_cast<double>(to_microseconds(e.end)) * 1e-6;
     if (e.rows < kRows || seen.worst > 0 || e.status != WindowStatus::valid) return;
@@ -55,7 +55,8 @@ Seen run(const std::optional<Tuning>& start) {
       if (const double v = e.value[static_cast<std::size_t>(p)];
           t.table[p].kind == ParameterKind::frame_stiffness && !std::isnan(v))
         seen.worst = std::max(seen.worst, std::abs(v / t.theta[p] - 1));
-  });
+  };
+  Pipeline pipeline(t.config);
   if (start) {
     pipeline.start_tuned(*start);
     EXPECT_EQ(pipeline.theta0(), start->theta0);
@@ -63,8 +64,8 @@ Seen run(const std::optional<Tuning>& start) {
   }
   for (int i = 0; i < t.accel.rows(); ++i)
     for (int a = 0; a < t.accel.cols(); ++a)
-      pipeline.push(test::sample_at(t.accel, kRate_hz, i, a));
-  pipeline.finish();
+      each_main_window(pipeline.push(test::sample_at(t.accel, kRate_hz, i, a)), take);
+  each_main_window(pipeline.finish(), take);
   seen.tuning = pipeline.tuning();
   return seen;
 }
@@ -89,7 +90,7 @@ TEST(StartTuned, WhatWasNotFoundRightIsOnlyWhereItBegins) {
 TEST(StartTuned, HasNoEffectWithoutSelfTuning) {
   PipelineConfig config = tower().config;
   config.options.self_tune = false;
-  Pipeline pipeline(config, [](const WindowEstimate&) {});
+  Pipeline pipeline(config);
   const Eigen::VectorXd before = pipeline.theta0();
   pipeline.start_tuned({2 * before, std::vector<double>(config.axes.size(), 1e-4)});
   EXPECT_EQ(pipeline.theta0(), before);

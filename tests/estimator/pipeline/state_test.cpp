@@ -34,12 +34,12 @@ struct Said {
   }
 };
 
-/// The pipeline under test with all it says.
+/// The pipeline under test with all estimates it gave.
 struct Watched {
-  explicit Watched(const PipelineConfig& config)
-      : pipeline(
-            config, [this](const WindowEstimate& e) { said(e); },
-            [this](const WindowEstimate& e) { said(e); }) {}
+  explicit Watched(const PipelineConfig& config) : pipeline(config) {}
+  void push(const AccelSample& sample) {
+    each_window(pipeline.push(sample), [this](const WindowEstimate& e) { said(e); });
+  }
   Said said;
   Pipeline pipeline;
 };
@@ -59,7 +59,7 @@ class State : public testing::TestWithParam<bool> {
 
   /// Samples of an instant, with what goes wrong in a long night: lost ones, a node that fails for
   /// a while, one that is stuck, one that clips, an interruption, late and repeated samples.
-  void push(Pipeline& pipeline, int t, int from_axis, int to_axis, int shift = 0) const {
+  void push(Watched& watched, int t, int from_axis, int to_axis, int shift = 0) const {
     if (t >= 690 && t < 770) return;  // nobody
     for (int axis = from_axis; axis < to_axis; ++axis) {
       if ((t * 31 + axis) % 97 == 0) continue;
@@ -68,8 +68,8 @@ class State : public testing::TestWithParam<bool> {
       sample.accel += 0.1 * shift;
       if (axis == 5 && t >= 860 && t < 890) sample.accel = 1;
       if (axis == 1) sample.accel = std::clamp(sample.accel, -1.5, 1.5);
-      pipeline.push(sample);
-      if (t % 40 == 7 && axis == 2) pipeline.push(sample);
+      watched.push(sample);
+      if (t % 40 == 7 && axis == 2) watched.push(sample);
     }
   }
   int axes() const { return static_cast<int>(config_.axes.size()); }
@@ -100,7 +100,7 @@ TEST_P(State, CutAnywhereGoesOnBitByBit) {
   for (int t = 0; t < kInstants; ++t) {
     int axis = 0;
     for (; next != cuts.end() && next->t == t; ++next) {
-      push(uncut.pipeline, t, axis, std::max(axis, next->axis));
+      push(uncut, t, axis, std::max(axis, next->axis));
       axis = std::max(axis, next->axis);
       next->axis = axis;
       StateWriter writer;
@@ -108,7 +108,7 @@ TEST_P(State, CutAnywhereGoesOnBitByBit) {
       next->state = writer.bytes();
       next->said = uncut.said.estimates.size();
     }
-    push(uncut.pipeline, t, axis, axes());
+    push(uncut, t, axis, axes());
   }
   const PipelineCounters counters = uncut.pipeline.counters();
   EXPECT_GE(counters.retunes, 1) << "the cuts should meet every phase of re-tuning";
@@ -117,13 +117,12 @@ TEST_P(State, CutAnywhereGoesOnBitByBit) {
   std::size_t differing = 0;
   for (const Cut& cut : cuts) {
     Watched resumed(config_);
-    for (int t = 0; t < (cut.t % 2 == 0 ? kOtherMotion : 0); ++t)
-      push(resumed.pipeline, t, 0, axes(), 1);
+    for (int t = 0; t < (cut.t % 2 == 0 ? kOtherMotion : 0); ++t) push(resumed, t, 0, axes(), 1);
     resumed.said.estimates.clear();
     StateReader reader(cut.state);
     ASSERT_TRUE(resumed.pipeline.load(reader) && reader.whole()) << cut.t;
-    push(resumed.pipeline, cut.t, cut.axis, axes());
-    for (int t = cut.t + 1; t < cut.t + kCompared; ++t) push(resumed.pipeline, t, 0, axes());
+    push(resumed, cut.t, cut.axis, axes());
+    for (int t = cut.t + 1; t < cut.t + kCompared; ++t) push(resumed, t, 0, axes());
     const auto& said = resumed.said.estimates;
     ASSERT_GT(said.size(), kCompared / 4u) << cut.t;
     for (std::size_t i = 0; i < said.size(); ++i)
@@ -139,7 +138,7 @@ TEST_P(State, CutAnywhereGoesOnBitByBit) {
 
 TEST_P(State, ReadsBackWhatItWrote) {
   Watched first(config_);
-  for (int t = 0; t < 500; ++t) push(first.pipeline, t, 0, axes());
+  for (int t = 0; t < 500; ++t) push(first, t, 0, axes());
   StateWriter once;
   first.pipeline.save(once);
   Watched second(config_);

@@ -167,20 +167,22 @@ void run(const Layout& layout, std::uint64_t seed, Tally& tally) {
 
   std::vector<StoryDrift> drifts;
   ShakingWatch watch(config, {});
-  const auto take = [&](const SampleSet& set) {
-    if (!watch.push(set, nullptr)) return;
-    drifts = story_drifts(config, watch.ended().peak, watch.ended().known);
+  Pipeline pipeline(config);
+  const auto take = [&](Pipeline::Results&& results) {
+    for (const PipelineResult& r : results) {
+      if (r.instant != nullptr && watch.push(*r.instant, nullptr))
+        drifts = story_drifts(config, watch.ended().peak, watch.ended().known);
+      if (r.estimate != nullptr) watch.push(*r.estimate);
+    }
   };
-  Pipeline pipeline(
-      config, [&](const WindowEstimate& e) { watch.push(e); }, {}, take);
   const int instants = static_cast<int>((kFirst_s + kSecond_s) * kRate_hz);
   for (int i = 0; i < instants; ++i) {
     const std::vector<double>& raw = sensors.measure(i / kRate_hz, response.next());
     for (std::size_t a = 0; a < raw.size(); ++a)
-      pipeline.push(
-          {from_microseconds(std::llround(1e6 * i / kRate_hz)), static_cast<int>(a), raw[a]});
+      take(pipeline.push(
+          {from_microseconds(std::llround(1e6 * i / kRate_hz)), static_cast<int>(a), raw[a]}));
   }
-  pipeline.finish();
+  take(pipeline.finish());
   ASSERT_EQ(drifts.size(), static_cast<std::size_t>(truly.stories)) << layout.name;
   for (const StoryDrift& d : drifts) {
     if (d.gap_at_peak()) {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/structure/place_names.h"
+#include "estimator/structure/structure.h"
 #include "tests/support/example_effects.h"
 
 namespace framewatch::estimator {
@@ -26,7 +26,7 @@ TEST(EffectCatalogue, IsInTheOrderOfItsKindsAndNamesEachOnce) {
   EXPECT_EQ(find_effect("ghost"), std::nullopt);
 }
 
-/// A key is one quantity wherever it stands: the option table knows it once.
+/// A key stands for one quantity everywhere, so the option table has it once.
 TEST(EffectCatalogue, AKeyHasOneUnit) {
   for (const EffectDescription& a : effect_catalogue())
     for (const EffectDescription& b : effect_catalogue())

@@ -19,7 +19,7 @@ Eigen::MatrixXd stiffness_of(const Structure& s, const Element& e) {
   return b * b.transpose();
 }
 
-/// theta of the floor panels alone, 1 for every stiffness.
+/// Returns a theta with 1 for every panel stiffness and 0 elsewhere.
 Eigen::VectorXd panels_alone(const ParameterTable& table) {
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(table.size());
   for (int i = 0; i < table.size(); ++i)

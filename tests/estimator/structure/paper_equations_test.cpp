@@ -1,5 +1,5 @@
-// The paper's appendix, coded as it is printed but for its misprints (docs/equations.md), against
-// the assembled matrices: nothing here knows about elements.
+// Compares the assembled matrices with the paper's appendix, coded as printed except for its
+// misprints (docs/equations.md). Nothing here uses elements.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace paper_equations_test {
 
 constexpr double kRounding = 1e-13;
 
-/// 2 stories, n = 2, m = 4: a mistaken m for n shows.
+/// 2 stories, n = 2, m = 4: n and m differ, so that a confusion shows.
 Structure oblong() {
   Structure s = test::table2();
   s.frames_x = {"y1", "y2"};
@@ -67,7 +67,7 @@ struct Appendix {
   double q_fy(int i, int j, int l) const {
     return panel(j, l) ? g(i, j, l) * ly(l) * gamma(i, j, l) : 0;
   }
-  /// Left sides of (A11), (A12) without the inertia.
+  /// The left sides of (A11) and (A12) without the inertia.
   Eigen::VectorXd forces() const {
     Eigen::VectorXd out(s.degrees_of_freedom());
     for (int i = 1; i <= s.stories; ++i) {

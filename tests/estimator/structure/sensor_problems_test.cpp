@@ -11,7 +11,7 @@ namespace framewatch::estimator {
 namespace sensor_problems_test {
 
 using Axes = std::vector<SensorAxis>;
-constexpr std::size_t kBaseX = 20;  ///< of table1's axes
+constexpr std::size_t kBaseX = 20;  ///< number of axes of table1
 constexpr std::size_t kBaseY = 21;
 
 std::vector<Problem> problems_after(const std::function<void(Axes&)>& change) {
@@ -80,7 +80,7 @@ TEST(SensorProblems, AxesAtAPlaceNeedFramesInTheirDirection) {
   axes[0].frame = -1;
   axes[0].plan = PlanPlace{5, 5, 0};
   EXPECT_TRUE(find_problems(s, axes).empty());
-  axes.push_back(axes[0]);  // two at one place are averaged
+  axes.push_back(axes[0]);  // two axes at one place are averaged
   axes.back().name = "twin";
   EXPECT_TRUE(find_problems(s, axes).empty());
 }

@@ -10,7 +10,7 @@
 namespace framewatch::estimator {
 namespace structure_problems_test {
 
-/// The fields of the problems that a change to a sound building brings.
+/// Returns the fields of the problems that a change causes in a valid building.
 std::vector<std::string> fields_after(const std::function<void(Structure&)>& change) {
   Structure s = test::table2();
   change(s);

@@ -253,10 +253,11 @@ void full(std::uint64_t seed, Tally& tally) {
     listener->take(e);
   };
   if (wordy()) std::printf("full %d\n", static_cast<int>(seed));
-  Pipeline pipeline(config, take, take);
+  Pipeline pipeline(config);
   for (Eigen::Index i = 0; i < accel.rows(); ++i)
     for (Eigen::Index a = 0; a < accel.cols(); ++a)
-      pipeline.push({from_microseconds(10'000 * i), static_cast<int>(a), accel(i, a)});
+      each_window(pipeline.push({from_microseconds(10'000 * i), static_cast<int>(a), accel(i, a)}),
+                  take);
 }
 
 /// The tower with sensors on every fifth floor, one story or two of different groups losing
@@ -288,14 +289,15 @@ void partial(std::uint64_t seed, double softening, Tally& tally) {
     if (now_s < kLearned_s) return;
     watch.emplace(table, options(), window_lengths_s({}), learner.so_far(), model);
   };
-  Pipeline pipeline(config, take, take);
+  Pipeline pipeline(config);
   std::int64_t at = 0;
   const auto shake_until = [&](double until_s, double level) {
     for (; now_s < until_s; ++at) {
       const Eigen::VectorXd& accel = tower.next(level);
       now_s = static_cast<double>(at) / test::SofteningTower::kRate_hz;
       for (Eigen::Index a = 0; a < accel.size(); ++a)
-        pipeline.push({from_microseconds(10'000 * at), static_cast<int>(a), accel[a]});
+        each_window(pipeline.push({from_microseconds(10'000 * at), static_cast<int>(a), accel[a]}),
+                    take);
     }
   };
   // Between weak and strong the baseline learns the amplitudes.

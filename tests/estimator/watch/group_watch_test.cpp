@@ -42,7 +42,7 @@ WatchOptions options() {
 class Watched {
  public:
   Watched(test::SofteningTower& tower, std::function<void(const WindowEstimate&)> take)
-      : tower_(tower), pipeline_(config(tower), take, take) {}
+      : tower_(tower), pipeline_(config(tower)), take_(std::move(take)) {}
 
   static PipelineConfig config(const test::SofteningTower& tower) {
     PipelineConfig out = tower.config();
@@ -56,7 +56,9 @@ class Watched {
     for (std::int64_t i = 0; i < instants; ++i, ++at_) {
       const Eigen::VectorXd& accel = tower_.next(level);
       for (Eigen::Index a = 0; a < accel.size(); ++a)
-        pipeline_.push({from_microseconds(10'000 * at_), static_cast<int>(a), accel[a]});
+        each_window(
+            pipeline_.push({from_microseconds(10'000 * at_), static_cast<int>(a), accel[a]}),
+            take_);
     }
   }
   double now_s() const { return static_cast<double>(at_) / test::SofteningTower::kRate_hz; }
@@ -64,6 +66,7 @@ class Watched {
  private:
   test::SofteningTower& tower_;
   Pipeline pipeline_;
+  std::function<void(const WindowEstimate&)> take_;
   std::int64_t at_ = 0;
 };
 

@@ -79,7 +79,7 @@ Found watch(const Quiet& q) {
       damaged_hours = hours + q.undamaged_hours;
     }
   };
-  Pipeline pipeline(config, take, take);
+  Pipeline pipeline(config);
   bool damaged = false;
   for (std::int64_t i = 0;
        !done && hours < std::min(damaged_hours, 2 * q.learn_hours + 1) + q.most_hours; ++i) {
@@ -92,7 +92,7 @@ Found watch(const Quiet& q) {
     }
     const Eigen::VectorXd& accel = building.next();
     for (int a = 0; a < accel.size(); ++a)
-      pipeline.push({from_microseconds(10'000 * i), a, accel[a]});
+      each_window(pipeline.push({from_microseconds(10'000 * i), a, accel[a]}), take);
   }
   return out;
 }

@@ -71,10 +71,12 @@ std::vector<estimator::WindowEstimate> estimates_over_lcm(const std::string& pat
     names.push_back(config.pipeline.axes[a].name);
     addresses.push_back({"ACCEL", static_cast<int>(a), 0});
   }
-  std::vector<estimator::WindowEstimate> estimates;
+  struct : daemon::EstimationListener {
+    void on_estimate(const estimator::WindowEstimate& e) override { estimates.push_back(e); }
+    std::vector<estimator::WindowEstimate> estimates;
+  } heard;
   daemon::Estimation estimation(
-      config, [](std::int64_t, const std::string&, const std::vector<std::uint8_t>&) {},
-      [&](const estimator::WindowEstimate& e) { estimates.push_back(e); });
+      config, [](std::int64_t, const std::string&, const std::vector<std::uint8_t>&) {}, &heard);
   drivers::AccelMessages messages(names, addresses, 100);
   daemon::Simulation simulation(*scenario);
   for (std::int64_t k = 0; k < daemon::instants(*scenario); ++k) {
@@ -85,7 +87,7 @@ std::vector<estimator::WindowEstimate> estimates_over_lcm(const std::string& pat
       estimation.message(m.channel, m.bytes.data(), m.bytes.size());
   }
   estimation.finish();
-  return estimates;
+  return heard.estimates;
 }
 
 namespace {
@@ -108,8 +110,7 @@ std::size_t different(const std::vector<estimator::WindowEstimate>& a,
 
 LiveBuses::LiveBuses(const daemon::Config& config)
     : estimation(
-          config, [](std::int64_t, const std::string&, const std::vector<std::uint8_t>&) {},
-          [this](const estimator::WindowEstimate& e) { estimates.push_back(e); }),
+          config, [](std::int64_t, const std::string&, const std::vector<std::uint8_t>&) {}, this),
       source(config.can, false,
              [this](int bus, const drivers::CanFrame& frame) { estimation.frame(bus, frame); }) {
   for (const std::string& note : source.open()) ADD_FAILURE() << note;

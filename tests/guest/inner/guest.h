@@ -58,11 +58,13 @@ class Process {
 };
 
 /// The buses of a configuration, live, in this process.
-class LiveBuses {
+class LiveBuses : private daemon::EstimationListener {
  public:
   explicit LiveBuses(const daemon::Config& config);
   /// Handles frames until `done` is true, and half a second more.
   void run(const std::function<bool()>& done);
+
+  void on_estimate(const estimator::WindowEstimate& e) override { estimates.push_back(e); }
 
   std::vector<estimator::WindowEstimate> estimates;
   daemon::Estimation estimation;

@@ -17,7 +17,7 @@
 #include "daemon/config/keys/section_table.h"
 #include "daemon/config/keys/watch_options.h"
 #include "drivers/can/can_map.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/structure/sensors.h"
 #include "tests/support/key_values.h"
 

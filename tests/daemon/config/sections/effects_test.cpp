@@ -109,7 +109,7 @@ gc_nsprad = 1
   EXPECT_TRUE(r.says(":19:", "must be >= 0 N")) << r.all();
   EXPECT_TRUE(r.says(":14:", "v0_mps: is missing")) << r.all();
   EXPECT_TRUE(r.says(":23:", "another channel")) << r.all();
-  EXPECT_TRUE(r.says(":27:", "neighbouring floors")) << r.all();
+  EXPECT_TRUE(r.says(":27:", "neighboring floors")) << r.all();
   EXPECT_TRUE(r.says(":32:", "expected a number")) << r.all();
   EXPECT_TRUE(r.says(":30:", "direction: is missing")) << r.all();
   EXPECT_TRUE(r.says(":35:", "floor = \"rigid\"")) << r.all();

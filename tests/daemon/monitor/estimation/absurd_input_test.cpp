@@ -31,7 +31,7 @@ constexpr double kSeconds = 20;
 constexpr int kNode = 3;
 
 /// What an estimation says.
-struct Listener {
+struct Listener : EstimationListener {
   explicit Listener(const Config& config)
       : estimation(
             config,
@@ -40,7 +40,12 @@ struct Listener {
               if (channel.ends_with("EVENT")) events.push_back(*drivers::decoded<event_t>(bytes));
               if (channel.ends_with("STATUS")) status = *drivers::decoded<status_t>(bytes);
             },
-            [this](const estimator::WindowEstimate& e) { estimates.push_back(e); }) {}
+            this) {}
+  void on_estimate(const estimator::WindowEstimate& e) override { estimates.push_back(e); }
+  void on_sample(const estimator::AccelSample& s) override {
+    if (std::isfinite(s.accel)) most = std::max(most, std::abs(s.accel));
+  }
+  double most = 0;  ///< m/s^2, of all samples
   std::vector<event_t> events;
   status_t status;
   std::vector<estimator::WindowEstimate> estimates;
@@ -221,19 +226,12 @@ TEST(AbsurdInput, FloatsOnCanAreNotSmearedOverTheGrid) {
   });
   ASSERT_GT(beyond, 50);
   Listener heard(config);
-  double most = 0;
-  heard.estimation.tap({[&](const estimator::AccelSample& s) {
-                          if (std::isfinite(s.accel)) most = std::max(most, std::abs(s.accel));
-                        },
-                        {},
-                        {},
-                        {}});
   for (const drivers::BusFrame& f : frames) heard.estimation.frame(f.bus, f.frame);
   heard.estimation.finish();
   std::int64_t absurd = 0;
   for (const estimator::AxisCounters& c : heard.estimation.axis_counters()) absurd += c.absurd;
   EXPECT_EQ(absurd, beyond);
-  EXPECT_LT(most, 1.1);
+  EXPECT_LT(heard.most, 1.1);
   EXPECT_FALSE(heard.events.empty());
 }
 

@@ -113,7 +113,7 @@ TEST(Publisher, TableAndStatusSayWhatTheNumbersMean) {
                                   const std::vector<std::uint8_t>& bytes) {
     sent.push_back({time_us, channel, bytes});
   });
-  const estimator::Pipeline pipeline(config.pipeline, [](const estimator::WindowEstimate&) {});
+  const estimator::Pipeline pipeline(config.pipeline);
   publisher.parameters(42, pipeline);
   StatusCounts counts{7, 8, 9, 10, {}};
   for (std::size_t i = 0; i < config.pipeline.axes.size(); ++i)

@@ -130,7 +130,6 @@ class AttackedEstimation : public testing::Test {
     lcm_ = drivers::open_lcm(kUrl, {}, error);
     ASSERT_TRUE(lcm_) << error;
     live_.emplace(*config_, *lcm_);
-    live_->on_event([this](const event_t& event) { events_.push_back(event); });
   }
 
   /// beside: sends what it likes after each message.
@@ -174,7 +173,6 @@ class AttackedEstimation : public testing::Test {
   std::optional<Config> config_;
   std::unique_ptr<drivers::LcmProvider> lcm_;
   std::optional<LiveEstimation> live_;
-  std::vector<event_t> events_;
   Payloads quiet_, attacked_;
 };
 
@@ -195,9 +193,10 @@ TEST_F(AttackedEstimation, ATwinOnAnotherSocketChangesNoBitOfAnEstimateAndIsAnEv
     twin.send(packets::whole(1, "ACCEL", text_of(drivers::encode_accel(sample))));
     std::this_thread::sleep_for(std::chrono::milliseconds(3));  // news comes once a second
   });
-  ASSERT_FALSE(events_.empty());
-  EXPECT_EQ(events_[0].kind, "two_senders");
-  EXPECT_NE(events_[0].message.find("127.0.0.1:"), std::string::npos) << events_[0].message;
+  const std::vector<event_t> events = live_->take_events();
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events[0].kind, "two_senders");
+  EXPECT_NE(events[0].message.find("127.0.0.1:"), std::string::npos) << events[0].message;
 }
 
 }  // namespace attacked_estimation_test

@@ -102,14 +102,13 @@ TEST(LiveEstimation, TheConfigurationIsAboveAStrayChannelTable) {
   const Config config = table();
   drivers::LcmProvider lcm("memq://");
   LiveEstimation live(config, lcm);
-  std::vector<event_t> events;
-  live.on_event([&](const event_t& event) { events.push_back(event); });
   const auto send = [&](const drivers::Message& message) {
     lcm.publish(message.channel, message.bytes.data(), static_cast<unsigned>(message.bytes.size()));
     EXPECT_TRUE(live.poll(100));
   };
   const drivers::AccelMessages swapped({"F1-Y1", "F1-Y2"}, {{"ACCEL", 3, 0}, {"ACCEL", 2, 0}}, 100);
   for (int i = 0; i < 1000; ++i) send(swapped.tables(i).front());
+  const std::vector<event_t> events = live.take_events();
   ASSERT_EQ(events.size(), 2u);
   for (const event_t& event : events) EXPECT_EQ(event.kind, "channel_table");
   EXPECT_EQ(live.estimation().raised().all().size(), 2u);

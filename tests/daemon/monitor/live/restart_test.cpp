@@ -161,11 +161,10 @@ class Restart : public testing::Test {
       EXPECT_EQ(backlog.empty(), !how.history);
       std::optional<History> history;
       if (how.history) live.record_to(&history.emplace(config));
-      live.on_event([&](const event_t& e) {
-        if (e.kind == "strong_motion") out.events.push_back(e);
-      });
       live.catch_up(std::move(backlog));
       feed(live, lcm, killed_s + how.away_s, kSeconds);
+      for (const event_t& e : live.take_events())
+        if (e.kind == "strong_motion") out.events.push_back(e);
     }
     Reports written = reports_of(name);
     written.events = out.events;
@@ -194,28 +193,30 @@ class Restart : public testing::Test {
     double drift = 0, force = 0;
     std::optional<estimator::StoryResponse> response;
     std::int64_t first_us = 0;
-    estimator::Acquisition acquisition(
-        config.pipeline.axes, config.pipeline.options, [&](const estimator::SampleSet& set) {
-          if (first_us == 0) first_us = to_microseconds(set.time);
-          response->push(set);
-          double largest = 0;
-          for (const double d : response->drift_m())
-            if (std::isfinite(d)) largest = std::max(largest, std::abs(d));
-          const double shear = std::abs(response->base_shear_n()[0]);
-          if (largest <= drift && !(shear > force)) return;
-          drift = std::max(drift, largest);
-          if (shear > force) force = shear;
-          last_peak_s_ = seconds(to_microseconds(set.time) - first_us);
-        });
+    estimator::Acquisition acquisition(config.pipeline.axes, config.pipeline.options);
+    const auto take = [&](estimator::Acquisition::SampleSets&& sets) {
+      for (const estimator::SampleSet& set : sets) {
+        if (first_us == 0) first_us = to_microseconds(set.time);
+        response->push(set);
+        double largest = 0;
+        for (const double d : response->drift_m())
+          if (std::isfinite(d)) largest = std::max(largest, std::abs(d));
+        const double shear = std::abs(response->base_shear_n()[0]);
+        if (largest <= drift && !(shear > force)) continue;
+        drift = std::max(drift, largest);
+        if (shear > force) force = shear;
+        last_peak_s_ = seconds(to_microseconds(set.time) - first_us);
+      }
+    };
     estimator::PipelineConfig pipeline = config.pipeline;
     pipeline.axes = acquisition.axes();
     response.emplace(pipeline);
     drivers::AccelIntake intake(
-        wanted_axes(config), [&](const estimator::AccelSample& s) { acquisition.push(s); },
+        wanted_axes(config), [&](const estimator::AccelSample& s) { take(acquisition.push(s)); },
         intake_settings(config));
     for (const drivers::LogEvent& e : messages_)
       (void)intake.message(e.channel, e.data.data(), e.data.size());
-    acquisition.finish();
+    take(acquisition.finish());
     ASSERT_GT(last_peak_s_, kStateAge_s);
     ASSERT_LT(last_peak_s_, kShaken_s - 2 * kAway_s);
   }
@@ -294,18 +295,22 @@ TEST_F(Restart, ThePageHasTheSamePeaks) {
   // The page's own process was not killed.
   const Config config = config_of("page2", false);
   std::optional<Shaking> shaking;
-  estimator::Pipeline pipeline(
-      config.pipeline, [&](const estimator::WindowEstimate& e) { shaking->follow(e); }, {},
-      [&](const estimator::SampleSet& set) { shaking->push(set); });
+  estimator::Pipeline pipeline(config.pipeline);
+  const auto take = [&](estimator::Pipeline::Results&& results) {
+    for (const estimator::PipelineResult& result : results) {
+      if (result.instant != nullptr) shaking->push(*result.instant);
+      if (result.estimate != nullptr) shaking->follow(*result.estimate);
+    }
+  };
   estimator::PipelineConfig calibrated = config.pipeline;
   calibrated.axes = pipeline.axes();
   shaking.emplace(calibrated);
   drivers::AccelIntake intake(
-      wanted_axes(config), [&](const estimator::AccelSample& s) { pipeline.push(s); },
+      wanted_axes(config), [&](const estimator::AccelSample& s) { take(pipeline.push(s)); },
       intake_settings(config));
   for (const drivers::LogEvent& e : messages())
     (void)intake.message(e.channel, e.data.data(), e.data.size());
-  pipeline.finish();
+  take(pipeline.finish());
   ASSERT_NE(shaking->strongest(), nullptr);
   const estimator::PeakResponse& peak = shaking->strongest()->peak;
   EXPECT_NEAR(drift(r.json[0]) / estimator::largest_drift_ratio(peak, config.pipeline.structure), 1,

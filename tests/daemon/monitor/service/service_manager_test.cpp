@@ -131,7 +131,7 @@ TEST(ProgressWatch, OneSensorOfTenIsEnough) {
   std::vector<ConfigProblem> problems;
   const auto config = load_config(test::table_config(), problems);
   ASSERT_TRUE(config);
-  estimator::Pipeline pipeline(config->pipeline, [](const estimator::WindowEstimate&) {});
+  estimator::Pipeline pipeline(config->pipeline);
   ProgressWatch watch;
   bool well = true;
   for (std::int64_t i = 0; i < 2000; ++i) {

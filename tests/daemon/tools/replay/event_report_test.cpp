@@ -134,7 +134,6 @@ TEST_F(EventReportReplay, LiveWritesTheSameWithoutBeingAsked) {
   {
     drivers::LcmProvider lcm("memq://");
     LiveEstimation live(*config, lcm);
-    live.on_event([&](const event_t& e) { events.push_back(e); });
     drivers::LcmLogReader reader;
     ASSERT_TRUE(reader.open(path("rec.lcmlog")));
     drivers::LogEvent event;
@@ -143,6 +142,7 @@ TEST_F(EventReportReplay, LiveWritesTheSameWithoutBeingAsked) {
       ASSERT_TRUE(live.poll(0));
     }
     live.finish();
+    events = live.take_events();
   }
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events.front().segment, name);

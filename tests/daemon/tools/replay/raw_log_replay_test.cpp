@@ -31,8 +31,12 @@ class RawLogReplay : public test::ReplayFixture {
     config_.history->compress = false;
     HistoryKeeper keeper(*config_.history);
     RawHistory raw(config_, [&](auto log) { keeper.retire(std::move(log)); });
-    Estimation estimation(config_, {});
-    estimation.tap({[&](const estimator::AccelSample& s) { raw.sample(s); }, {}, {}, {}});
+    struct Stored : EstimationListener {
+      explicit Stored(RawHistory& raw) : raw_(raw) {}
+      void on_sample(const estimator::AccelSample& s) override { raw_.sample(s); }
+      RawHistory& raw_;
+    } stored(raw);
+    Estimation estimation(config_, {}, &stored);
     ReplaySurvey survey(config_, false);
     survey.feed(estimation);
     survey.add(log());

@@ -40,15 +40,18 @@ Identified identify(const drivers::Record& record) {
       std::string(FRAMEWATCH_SOURCE_DIR) + "/configs/mini_shake_table_xsens.toml", problems);
   if (!config) return {};
   std::vector<std::vector<double>> published(3);
-  estimator::Pipeline pipeline(config->pipeline, [&](const estimator::WindowEstimate& estimate) {
+  const auto take = [&](const estimator::WindowEstimate& estimate) {
     for (std::size_t i = 0; i < 3; ++i)
       if (!std::isnan(estimate.value[i])) published[i].push_back(estimate.value[i]);
-  });
+  };
+  estimator::Pipeline pipeline(config->pipeline);
   for (std::size_t t = 0; t < record.time_s.size(); ++t)
     for (std::size_t a = 0; a < record.names.size(); ++a)
-      pipeline.push({estimator::from_microseconds(std::llround(record.time_s[t] * 1e6)),
-                     static_cast<int>(a), record.accel_mps2[a][t]});
-  pipeline.finish();
+      estimator::each_main_window(
+          pipeline.push({estimator::from_microseconds(std::llround(record.time_s[t] * 1e6)),
+                         static_cast<int>(a), record.accel_mps2[a][t]}),
+          take);
+  estimator::each_main_window(pipeline.finish(), take);
   Identified out;
   Eigen::VectorXd theta = Eigen::VectorXd::Ones(6);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -11,7 +11,7 @@
 namespace framewatch::estimator {
 namespace guessed_design_test {
 
-/// What retuned_design makes of one ratio and error for all unknowns shown, theta order.
+/// Applies retuned_design to one ratio and error for all unknowns, all shown, theta order.
 struct Bench {
   Structure structure = test::table1();
   ParameterTable table{structure};
@@ -19,7 +19,7 @@ struct Bench {
   Eigen::VectorXd design = test::table1_theta();
   std::vector<double> ratio = std::vector<double>(50, 1.0), error = std::vector<double>(50, 0.0);
   std::vector<std::uint8_t> shown = std::vector<std::uint8_t>(50, 1);
-  /// Internal position of a parameter.
+  /// Returns the internal position of a parameter.
   std::size_t unknown(const char* name) const {
     for (int u = 0; u < layout.unknowns(); ++u)
       if (table[layout.parameter(u / layout.own(), u % layout.own())].name == name)
@@ -56,7 +56,7 @@ TEST(Design, DoubtfulRatiosMoveLess) {
   Bench b;
   const std::size_t u = b.unknown("kx_2_y1");
   b.ratio[u] = 2;
-  b.error[u] = 0.1 * 2;  // a tenth: half the way, in logarithms
+  b.error[u] = 0.1 * 2;  // a relative error of a tenth: half the way, in logarithms
   EXPECT_NEAR(b.factor("kx_2_y1"), std::sqrt(2.0), 1e-12);
   b.error[u] = 100;
   EXPECT_NEAR(b.factor("kx_2_y1"), 1, 1e-3);
@@ -78,7 +78,7 @@ TEST(Design, WhatIsNotShownFollowsItsKind) {
   }
   b.shown[b.unknown("kx_4_y2")] = false;
   EXPECT_NEAR(b.factor("kx_4_y2"), 3, 1e-12);
-  b.ratio[b.unknown("kx_4_y1")] = -1;  // impossible: as if not shown
+  b.ratio[b.unknown("kx_4_y1")] = -1;  // impossible: treated as not shown
   EXPECT_NEAR(b.factor("kx_4_y1"), 3, 1e-12);
 }
 

@@ -12,7 +12,7 @@
 namespace framewatch::estimator {
 namespace boxplot_test {
 
-/// MATLAB's rule, straight from its words, over the values that are there.
+/// MATLAB's rule as its documentation words it, for the finite values.
 BoxplotStatistics by_definition(const std::deque<double>& window) {
   std::vector<double> v;
   for (const double x : window)

@@ -1,5 +1,5 @@
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/regressors/regressor_tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,8 @@ constexpr int kBlocks = 20;
 constexpr int kBlockRows = 4;
 constexpr int kWindow = kBlocks * kBlockRows;
 constexpr int kSettle = 5;
-/// Issue 4: every later shift, relative to a fresh rebuild, after motion 1e6 times stronger.
+/// Issue 4: bound for every later shift, relative to a fresh rebuild, after motion 1e6 times
+/// stronger.
 constexpr double kLimit = 1e-14;
 
 /// Row filters and Gram matrix of a building, fed with random deformations.
@@ -41,7 +42,7 @@ struct Bench {
     std::fill(set.known.begin(), set.known.end(), std::uint8_t{1});
   }
 
-  /// One instant of amplitude `strength`; the window's sum is ready until finish().
+  /// Adds one instant of amplitude `strength`. The window's sum is ready until finish().
   void advance(double strength) {
     for (double& v : set.values) v = strength * random.normal();
     history.push_back(set);
@@ -67,7 +68,8 @@ struct Bench {
     entering.reset(kSettle), delayed.reset(kSettle), sums.reset();
     history.clear(), rows.clear(), counts.clear();
   }
-  /// Largest |sum - fresh rebuild| over the rebuild's diagonal geometric mean, all floors.
+  /// Returns the largest |sum - fresh rebuild| over the geometric mean of the rebuild's diagonals,
+  /// over all floors.
   double error() {
     const GramShape& shape = sums.shape();
     const WindowParts window = sums.window();
@@ -152,7 +154,7 @@ TEST(SlidingGram, FloorsWithoutRowsComeAndGo) {
 }
 
 TEST(SlidingGram, SpansAreTheSameWindowsAtTheirBlocks) {
-  // GIVEN sums of 20 blocks whose spans are 4 and 20 of them
+  // GIVEN sums of 20 blocks with spans of 4 and 20 blocks
   Bench b;
   SlidingGram spanned(b.layout, kBlocks, kBlockRows, {4, kBlocks});
   for (int t = 0; t < 3 * kWindow; ++t) {
@@ -166,7 +168,7 @@ TEST(SlidingGram, SpansAreTheSameWindowsAtTheirBlocks) {
     b.finish();
     spanned.maintain(nullptr);
     if (!closes || !spanned.span_full(1)) continue;
-    // THEN the long one is the main window, and both count their instants
+    // THEN the long span equals the main window, and both count their instants
     const WindowParts span = spanned.span(1);
     EXPECT_EQ(span.rows, kWindow);
     for (std::size_t k = 0; k < whole.size(); k += 7)
@@ -192,7 +194,7 @@ TEST(SlidingGram, AreNewAfterAReset) {
   }
 }
 
-/// One floor of few unknowns, so that many shifts are cheap to check.
+/// One floor with few unknowns, so that many shifts are cheap to check.
 Structure smallest() {
   Structure s;
   s.name = "one story";
@@ -203,7 +205,7 @@ Structure smallest() {
   return s;
 }
 
-/// FRAMEWATCH_SHIFTS: how many; 1e7 of them are for a schedule (docs/performance.md).
+/// FRAMEWATCH_SHIFTS sets the number of shifts. The schedule runs 1e7 (docs/performance.md).
 long shifts_to_run() {
   if (const char* asked = std::getenv("FRAMEWATCH_SHIFTS")) return std::atol(asked);
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -230,7 +232,7 @@ TEST(SlidingGram, StayExactLongAfterAStrongQuake) {
   ASSERT_EQ(layout.front(0), 3);
   constexpr std::size_t kRow = 4, kEntries = 6;
   std::vector<DeformationSet> motion(kWindow, deformations.make_set());
-  std::vector<double> rows(kRow * kWindow, 0.0);  // the window's, a ring
+  std::vector<double> rows(kRow * kWindow, 0.0);  // ring of the window's rows
   Random random(23);
   double worst = 0;
   const long shifts = shifts_to_run();

@@ -35,7 +35,7 @@ constexpr double kNoise = 0.01, kStep_s = 1e-3, kRate_hz = 100, kDuration_s = 40
 
 using Force = std::function<double(double)>;
 
-/// A shaker that does a little of everything from 0.4 to 12 Hz.
+/// A shaker that excites all frequencies from 0.4 to 12 Hz.
 Force shaker() {
   Effect effect = make_effect(EffectKind::unmeasured_force, {});
   effect.set("rms_n", 50e3);
@@ -66,12 +66,12 @@ SensorAxis force_axis(int story, int frame) {
 
 struct ForcedRecord {
   PipelineConfig config;
-  Eigen::VectorXd truth;    ///< of config.parameters()
+  Eigen::VectorXd truth;    ///< in the order of config.parameters()
   Eigen::MatrixXd samples;  ///< instants x axes
 };
 
-/// A plane building with channels on some floors and the force on one; groups 10 % off the design
-/// by turns.
+/// A plane building with channels on some floors and the force on one. Groups are off the design by
+/// 10 %, alternating in sign.
 ForcedRecord forced_record(int stories, const std::vector<int>& floors, int force_story,
                            const Force& force, double noise_ratio, const PlanMotion& ground = {}) {
   ForcedRecord out;
@@ -113,7 +113,7 @@ ForcedRecord forced_record(int stories, const std::vector<int>& floors, int forc
   return out;
 }
 
-/// Largest relative errors of the windows from `from_s` on.
+/// Returns the largest relative errors of the windows from `from_s` on.
 struct Largest {
   double stiffness = 0, damping = 0;
   int windows = 0, published = 0;
@@ -193,14 +193,17 @@ TEST(Force, WhoseChannelDiesEndsTheEstimatesUntilItIsBack) {
       .segment(from, to - from)
       .setConstant(std::numeric_limits<double>::quiet_NaN());
   std::vector<WindowEstimate> windows;
-  Pipeline pipeline(record.config, [&](const WindowEstimate& e) {
+  const auto take = [&](const WindowEstimate& e) {
     if (e.window == 0) windows.push_back(e);
-  });
+  };
+  Pipeline pipeline(record.config);
   for (Eigen::Index i = 0; i < record.samples.rows(); ++i)
     for (Eigen::Index a = 0; a < record.samples.cols(); ++a)
       if (std::isfinite(record.samples(i, a)))
-        pipeline.push({from_microseconds(10'000 * i), static_cast<int>(a), record.samples(i, a)});
-  pipeline.finish();
+        each_main_window(pipeline.push({from_microseconds(10'000 * i), static_cast<int>(a),
+                                        record.samples(i, a)}),
+                         take);
+  each_main_window(pipeline.finish(), take);
   int before = 0, meanwhile = 0, after = 0;
   for (const WindowEstimate& w : windows) {
     const auto end = static_cast<int>(to_microseconds(w.end) / 10'000);
@@ -217,7 +220,7 @@ TEST(Force, WhoseChannelDiesEndsTheEstimatesUntilItIsBack) {
   EXPECT_GT(after, 0);
 }
 
-/// Two frames each way, rigid floors, three channels a floor and a shaker out of the middle.
+/// Two frames each way, rigid floors, three channels per floor and an eccentric shaker.
 TEST(Force, OutOfTheMiddleOfARigidFloorTurnsIt) {
   PipelineConfig c;
   Structure& s = c.structure;
@@ -257,7 +260,7 @@ TEST(Force, OutOfTheMiddleOfARigidFloorTurnsIt) {
   options.rate_hz = kRate_hz;
   std::vector<ResponseChannel> channels = response_channels(s, c.axes);
   const Force force = shaker();
-  // The simulated channel of the force has every share of it: one over the first frame's share.
+  // The simulated force channel holds all of the force: one over the first frame's share.
   channels.back() = {s.degrees_of_freedom() + 2 + s.dof(3, 0), 0, 1 / weights[0]};
   ResponseStream response(std::make_unique<test::ForcedBuilding>(s, theta, lever, force, kStep_s),
                           {}, options, {}, channels);

@@ -79,7 +79,7 @@ TEST(GroupAccuracy, OfABuildingThatBendsNeedsTheBending) {
   trial.bending_nmprad = 3e12;
   trial.believed_bending_nmprad = 6e12;
   trial.duration_s = 90;
-  trial.from_s = 50;  // what is held has been found
+  trial.from_s = 50;  // the held bending stiffness has been found by then
   const FewSensorsErrors bending = errors_of(trial, 1);
   EXPECT_LT(bending.stiffness.quantile(0.9), 0.01);
   trial.believed_bending_nmprad = 0;
@@ -114,8 +114,7 @@ TEST(GroupAccuracy, IsPredictedFromTheDesign) {
   EXPECT_NEAR(std::exp(damping), 1, 0.3);
 }
 
-/// The same motion read on every floor by axes that the estimator takes for ones of their frames,
-/// or for ones at a place.
+/// The same motion on every floor, read by axes that are on their frames, or at a place in plan.
 PipelineConfig everywhere(const TallRecord& record, bool at_places) {
   PipelineConfig config = record.config;
   config.options.self_tune = false;

@@ -11,20 +11,21 @@ namespace lost_channel_test {
 
 constexpr double kNoSample = std::numeric_limits<double>::quiet_NaN();
 
-/// The last estimate of the main window, with the samples that there are.
+/// Returns the last estimate of the main window for the present samples.
 WindowEstimate last_estimate(const PipelineConfig& config, const Eigen::MatrixXd& accel) {
   WindowEstimate last(static_cast<std::size_t>(config.parameters().size()));
-  Pipeline pipeline(config, [&](const WindowEstimate& estimate) { last = estimate; });
+  const auto take = [&](const WindowEstimate& estimate) { last = estimate; };
+  Pipeline pipeline(config);
   for (Eigen::Index i = 0; i < accel.rows(); ++i)
     for (int a = 0; a < accel.cols(); ++a)
       if (std::isfinite(accel(i, a)))
-        pipeline.push({from_microseconds(10'000 * i), a, accel(i, a)});
-  pipeline.finish();
+        each_main_window(pipeline.push({from_microseconds(10'000 * i), a, accel(i, a)}), take);
+  each_main_window(pipeline.finish(), take);
   return last;
 }
 
-/// The groups on both sides of it become one, which keeps the ratio that was identified while the
-/// channel was there, whatever the design's was.
+/// The groups on both sides of the lost channel merge. They keep the ratio that was identified
+/// while the channel was there, whatever the design's ratio was.
 TEST(LostChannel, MakesItsFloorAnInnerOne) {
   daemon::TallTrial trial;
   trial.duration_s = 60;

@@ -1,4 +1,4 @@
-// A base that rocks, as its vertical channels show it.
+// A rocking base whose vertical channels show the rotation.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -39,12 +39,13 @@ SensorAxis vertical(const char* name, double x_m, double y_m) {
 
 struct RockingRecord {
   PipelineConfig config;
-  Eigen::VectorXd truth;    ///< of config.parameters()
+  Eigen::VectorXd truth;    ///< in the order of config.parameters()
   Eigen::MatrixXd samples;  ///< instants x axes
 };
 
-/// A plane building, floors 3 and 6 measured, whose base shakes and rocks. Relative to a base that
-/// turns rigidly by r, the floors feel -m h r'': the simulation's is a force of that shape.
+/// A plane building with floors 3 and 6 measured, whose base shakes and rocks. Relative to a base
+/// that turns rigidly by r, the floors feel -m h r'', which the simulation applies as a force of
+/// that shape.
 RockingRecord rocking_record(double noise_ratio) {
   RockingRecord out;
   PipelineConfig& c = out.config;
@@ -74,7 +75,7 @@ RockingRecord rocking_record(double noise_ratio) {
   ground.step_s = kStep_s;
   ResponseOptions options;
   options.rate_hz = kRate_hz;
-  // Of a floor its motion and h r'', of a vertical -x r'': shares of the forces, which are -m h
+  // Shares of the forces -m h r'': a floor reads its motion and h r'', a vertical axis reads -x
   // r''.
   const auto force = [](int story) { return kStories + 2 + story - 1; };
   const auto floor = [&](int story) {
@@ -112,7 +113,7 @@ double largest_error(const RockingRecord& record) {
   return windows > 0 ? out : std::numeric_limits<double>::infinity();
 }
 
-/// Without its verticals, as before they were used.
+/// Runs without the vertical axes.
 RockingRecord unaware(RockingRecord record) {
   record.config.axes.resize(3);
   record.samples = record.samples.leftCols(3).eval();
@@ -151,7 +152,7 @@ TEST(Rocking, DrivesTheFreeRunOfADiagnosis) {
 TEST(Rocking, IsThePlaneThroughTheVerticals) {
   constexpr double kRounding = 1e-12;
   const std::vector<std::uint8_t> all(4, 1);
-  // A plane that rises toward -x and +y, and as a whole.
+  // A plane that rises toward -x and +y and lifts as a whole.
   std::vector<SensorAxis> axes{vertical("a", 0, 0), vertical("b", 10, 0), vertical("c", 10, 6),
                                vertical("d", 1, 5)};
   Eigen::VectorXd lifted(4);
@@ -163,7 +164,7 @@ TEST(Rocking, IsThePlaneThroughTheVerticals) {
   ASSERT_EQ(rows[0].size(), 4);
   EXPECT_NEAR(rows[0] * lifted, 2e-3, kRounding);
   EXPECT_NEAR(rows[1] * lifted, -1e-3, kRounding);
-  // Two along x show that direction alone, two across both none.
+  // Two axes along x show that direction alone; two across both directions show neither.
   rows = base_rotations(axes, {1, 1, 0, 0});
   EXPECT_NEAR(rows[0] * lifted, 2e-3, kRounding);
   EXPECT_EQ(rows[1].size(), 0);

@@ -1,4 +1,4 @@
-// Rows of a filter that starts in full motion, against rows of one that has always run.
+// Compares rows of a filter that starts in full motion with rows of one that has always run.
 #include "estimator/identify/regressors/unknown_past.h"
 
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "estimator/identify/regressors/floor_rows.h"
+#include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/drift_controlled_integrator.h"
-#include "estimator/motion/oscillator_section.h"
 #include "estimator/state/archive.h"
 
 namespace framewatch::estimator {
@@ -18,8 +18,8 @@ namespace unknown_past_test {
 constexpr double kRate_hz = 100, kHighPass_hz = 0.3, kDamping = 0.35;
 constexpr int kStride = 4, kSignals = 3, kStart = 1000, kRows = 1500;
 constexpr int kShapes = 4;
-constexpr double kRounding = 1e-9;  // of the rows' energy
-constexpr double kLeft = 1e-5;      // likewise: shapes end at a thousandth
+constexpr double kRounding = 1e-9;  // share of the rows' energy
+constexpr double kLeft = 1e-5;      // share of the rows' energy: shapes end at a thousandth
 
 PolePair high_pass_poles() {
   const HighPass h(kHighPass_hz, kRate_hz);
@@ -31,7 +31,7 @@ PolePair section_poles(double hz) {
   return {s.a1, s.a2};
 }
 
-/// High-pass, then oscillator section, of one signal from instant `start` on.
+/// Applies high-pass and oscillator section to one signal from instant `start` on.
 std::vector<double> filtered(const std::vector<double>& x, int start, double hz) {
   const HighPass h(kHighPass_hz, kRate_hz);
   const OscillatorSection o(hz, kDamping, kRate_hz);
@@ -46,7 +46,7 @@ std::vector<double> filtered(const std::vector<double>& x, int start, double hz)
   return out;
 }
 
-/// Motion of several signals that has always been there, up to kRows instants after kStart.
+/// Motion of several signals without a start, up to kRows instants after kStart.
 std::vector<std::vector<double>> motion() {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -62,7 +62,7 @@ std::vector<std::vector<double>> motion() {
   return out;
 }
 
-/// Rows [signals..., 0], from instant kStart on, of filters that began at `start`.
+/// Returns rows [signals..., 0] from instant kStart on, of filters that began at `start`.
 std::vector<double> rows(int start, double hz) {
   std::vector<double> out(static_cast<std::size_t>(kRows * kStride), 0.0);
   const auto signals = motion();
@@ -98,7 +98,7 @@ std::vector<double> removed(UnknownPast past, std::vector<double> rows, int* unc
 }
 
 /// A filter that starts in motion and one that has always run give the same recursive residuals:
-/// whatever the past was, nothing of it is left.
+/// nothing of the past remains.
 TEST(UnknownPast, LeavesNothingOfThePast) {
   for (const double hz : {0.31, 1.0, 4.0, 15.0}) {
     const std::vector<double> always = removed(past_of(hz), rows(0, hz));
@@ -115,7 +115,7 @@ TEST(UnknownPast, LeavesNothingOfThePast) {
   }
 }
 
-/// The sum of h h^T of what is left equals the sum with the shapes projected out of all rows.
+/// The sum of h h^T of the residuals equals the sum with the shapes projected out of all rows.
 TEST(UnknownPast, SumsAreThoseOfAProjection) {
   constexpr int kSome = 200;
   const double hz = 2;
@@ -163,7 +163,7 @@ TEST(UnknownPast, SumsAreThoseOfAProjection) {
     }
 }
 
-/// Every shape costs one row, and once all have decayed rows pass as they are.
+/// Each shape costs one row. After all have decayed, rows pass unchanged.
 TEST(UnknownPast, CostsARowForEachShapeAndEnds) {
   const double hz = 2;
   int uncounted = 0;
@@ -181,7 +181,7 @@ TEST(UnknownPast, WithoutEquationsNothingIsRemoved) {
   EXPECT_EQ(row, (std::vector<double>{1, 2, 3, 0}));
 }
 
-/// Two equal pairs of poles are one pair: nothing becomes infinite.
+/// Two equal pairs of poles act as one pair: nothing becomes infinite.
 TEST(UnknownPast, EqualPolesAreNoTrouble) {
   UnknownPast past(kStride, 1, 2 * kShapes);
   past.begin(1);

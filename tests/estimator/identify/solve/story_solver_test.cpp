@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/regressors/regressor_tuning.h"
 #include "estimator/identify/solve/story_solver.h"
 
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@ namespace story_solver_test {
 constexpr int kBlocks = 20;
 constexpr int kBlockRows = 3;
 constexpr int kSettle = 1;
-/// Rounding, times condition numbers of a few thousand.
+/// Rounding error times condition numbers of a few thousand.
 constexpr double kLimit = 1e-10;
 
 /// Random deformations through rows and sums, and the same normal equations, dense.
 struct Bench {
-  /// still: front position of floor 0 whose deformation never moves; -1 for none.
+  /// still: front position of floor 0 whose deformation never moves; -1: all move.
   Bench(const Structure& s, const Eigen::VectorXd& theta, int still)
       : structure(s),
         table(s),
@@ -78,12 +78,12 @@ struct Bench {
   Eigen::MatrixXd gram;  ///< unknowns, response
 };
 
-/// Against a dense solution in which unknown `fixed` (or none, -1) is held at 1.
+/// Compares with a dense solution that holds unknown `fixed` at 1; -1: holds none.
 void expect_dense(const Structure& s, const Eigen::VectorXd& theta, double prior, int fixed) {
   Bench b(s, theta, fixed);
   const int n = b.layout.unknowns();
   NoiseCompensation noise(b.layout);
-  noise.update(b.filter, b.sums.window(), 0);  // nothing subtracted
+  noise.update(b.filter, b.sums.window(), 0);  // subtracts nothing
   b.solver.factor(b.sums.window(), std::vector<double>(static_cast<std::size_t>(n), prior),
                   std::vector<double>(static_cast<std::size_t>(n), 1.0), noise);
   std::vector<int> kept;

@@ -12,10 +12,10 @@ namespace framewatch::estimator {
 namespace element_drift_test {
 
 constexpr double kRate_hz = 100, kHz = 5, kPeak_mps2 = 1, kBase_mps2 = 0.1;
-/// The section is a double integrator well above its corner: rms of the deformation, relative.
+/// Relative error of the rms deformation: the section is a double integrator well above its corner.
 constexpr double kOff = 0.05;
 
-/// Its lowest frequency is 2 Hz.
+/// A building whose lowest frequency is 2 Hz.
 PipelineConfig two_stories() {
   PipelineConfig config;
   Structure& s = config.structure;
@@ -36,19 +36,21 @@ PipelineConfig two_stories() {
   return config;
 }
 
-/// Base and floors move with these peaks, m/s^2; lost: the axis that gives nothing from half of the
-/// time on.
+/// Base and floors move with these peaks, m/s^2. lost: the axis that stops delivering after half
+/// the time.
 WindowEstimate last_of(const std::vector<double>& peaks, int lost = -1) {
   WindowEstimate last;
-  Pipeline pipeline(two_stories(), [&](const WindowEstimate& e) { last = e; });
+  const auto take = [&](const WindowEstimate& e) { last = e; };
+  Pipeline pipeline(two_stories());
   for (int i = 0; i < 30 * kRate_hz; ++i)
     for (int a = 0; a < 3; ++a) {
       const double phase = std::sin(2 * M_PI * kHz * i / kRate_hz);
       const double accel = peaks[static_cast<std::size_t>(a)] * phase;
       const bool gone = a == lost && i > 15 * kRate_hz;
-      pipeline.push({from_microseconds(10'000 * i), a, gone ? kNaN : accel});
+      each_main_window(pipeline.push({from_microseconds(10'000 * i), a, gone ? kNaN : accel}),
+                       take);
     }
-  pipeline.finish();
+  each_main_window(pipeline.finish(), take);
   return last;
 }
 
@@ -62,7 +64,7 @@ TEST(ElementDrift, IsTheDisplacementBetweenTheEnds) {
   ASSERT_EQ(e.amplitude.size(), 4u);
   EXPECT_NEAR(e.amplitude[0] / rms_m(kPeak_mps2), 1, kOff);
   EXPECT_NEAR(e.amplitude[1] / rms_m(2 * kPeak_mps2), 1, kOff);
-  EXPECT_TRUE(std::isnan(e.amplitude[2]));  // of damping
+  EXPECT_TRUE(std::isnan(e.amplitude[2]));  // a damping has no amplitude
 }
 
 TEST(ElementDrift, IsNotKnownWithoutAChannelThatShowsIt) {

@@ -1,4 +1,4 @@
-// What minutes of weak motion say together, in which no ordinary window has a value.
+// Tests values from minutes of weak motion, in which ordinary windows have none.
 #include "estimator/identify/window/long_window.h"
 
 #include <algorithm>
@@ -17,23 +17,23 @@ namespace long_window_test {
 
 constexpr double kGround = 1e-4, kNoise = 7e-5;  // m/s^2/sqrt(Hz)
 constexpr double kLong_s = 200;
-constexpr int kWindow = 4;           // its index, behind four ordinary ones
-constexpr double kOff = 0.08;        // of the design
-constexpr double kMaxErrors = 5;     // standard errors a value may be off by
-constexpr double kMaxScatter = 1.4;  // rms of these
+constexpr int kWindow = 4;           // its index after four ordinary windows
+constexpr double kOff = 0.08;        // relative error of the design
+constexpr double kMaxErrors = 5;     // largest error of a value in standard errors
+constexpr double kMaxScatter = 1.4;  // largest rms of these errors
 constexpr double kMaxError = 0.09;
-constexpr double kMaxErrorOfOthers = 0.035;  // of what ordinary windows publish
+constexpr double kMaxErrorOfOthers = 0.035;  // largest error of values from ordinary windows
 constexpr double kSpike = 1000;              // m/s^2
 
 struct DeliveryResult {
   std::vector<WindowEstimate> given;
-  int others = 0, frames_of_others = 0;  ///< windows, and values of frame stiffness in them
+  int others = 0, frames_of_others = 0;  ///< ordinary windows, and their values of frame stiffness
 };
 
 class LongWindows : public testing::Test {
  protected:
-  /// Instants of the building; `alter` may change it before an instant, `delivered` a sample's
-  /// fate.
+  /// Runs the building for some instants. `alter` may change it before an instant; `delivered` may
+  /// change or drop a sample.
   DeliveryResult run(int instants,
                      const std::function<void(test::RestlessBuilding&, int)>& alter = {},
                      const std::function<bool(int, int)>& delivered = {}) const {
@@ -56,19 +56,20 @@ class LongWindows : public testing::Test {
                 ? 1
                 : 0;
     };
-    Pipeline pipeline(config, keep, keep);
+    Pipeline pipeline(config);
     for (int t = 0; t < instants; ++t) {
       if (alter) alter(building, t);
       const Eigen::VectorXd& accel = building.next();
       for (int a = 0; a < accel.size(); ++a)
         if (!delivered || delivered(t, a))
-          pipeline.push(
-              {from_microseconds(10'000LL * t), a, t == spike_at_ && a == 7 ? kSpike : accel[a]});
+          each_window(pipeline.push({from_microseconds(10'000LL * t), a,
+                                     t == spike_at_ && a == 7 ? kSpike : accel[a]}),
+                      keep);
     }
-    pipeline.finish();
+    each_window(pipeline.finish(), keep);
     return out;
   }
-  /// Deviations of the frames' stiffness over their standard errors.
+  /// Returns the deviations of the frames' stiffnesses over their standard errors.
   std::vector<double> deviations(const WindowEstimate& e, double* error = nullptr) const {
     std::vector<double> out;
     for (int p = 0; p < table_.size(); ++p) {
@@ -96,7 +97,7 @@ class LongWindows : public testing::Test {
     return axes;
   }();
   const std::size_t frames_ = 20;
-  int spike_at_ = -1;  ///< instant at which a sensor says kSpike
+  int spike_at_ = -1;  ///< instant at which a sensor reads kSpike
 };
 
 TEST_F(LongWindows, ShowWhatNoOtherWindowDoes) {
@@ -131,7 +132,7 @@ TEST_F(LongWindows, OneStrongMomentDoesNotStandForAllOfIt) {
   (void)deviations(calm.given.back(), &calm_error);
   ASSERT_EQ(off.size(), frames_);
   EXPECT_LT(rms(off), kMaxScatter);
-  EXPECT_GT(error, calm_error / 6);  // a hundred times less if it did
+  EXPECT_GT(error, calm_error / 6);  // a hundred times less if the spike counted
 }
 
 TEST_F(LongWindows, ASpikeOfASensorIsNoMotion) {
@@ -139,7 +140,7 @@ TEST_F(LongWindows, ASpikeOfASensorIsNoMotion) {
   const DeliveryResult run = this->run(25'000);
   ASSERT_FALSE(run.given.empty());
   const std::vector<double> off = deviations(run.given.back());
-  ASSERT_GE(off.size(), frames_ * 3 / 4);  // errors are larger, and near the limit
+  ASSERT_GE(off.size(), frames_ * 3 / 4);  // errors are larger and near the limit
   EXPECT_LT(rms(off), kMaxScatter);
 }
 

@@ -1,5 +1,5 @@
-// Windows of other lengths than the main one, held values, named reasons, and what a dying sensor
-// leaves of the rest.
+// Tests windows of other lengths than the main one, held values, named reasons, and the effect of a
+// failing sensor.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -17,14 +17,14 @@ namespace other_windows_test {
 
 constexpr double kNoise = 0.01;
 constexpr double kDuration_s = 25;
-/// A fifth of each window's length, in blocks of 0.25 s; [0] is the main one's.
+/// A fifth of each window's length, in blocks of 0.25 s; [0] belongs to the main window.
 constexpr std::int64_t kEvery_us[] = {10'000, 250'000, 500'000, 2'000'000};
 constexpr int kFewest = 5;
-/// Issue 3: parameters far from a lost sensor, against the same with the full array.
+/// Issue 3: parameters far from a lost sensor, compared with the full array.
 constexpr double kFarErrorRatio = 2;
 constexpr double kAlikePerMass = 400;     // 1/s^2: a first mode near 2 Hz
 constexpr double kAlikeDamping_s = 2e-3;  // damping over stiffness
-/// Instants: of a refilled filter, at most, and of the rows that a value needs.
+/// Instants until a filter is refilled, at most, and of the rows that a value needs.
 constexpr int kFill = 30, kSecond = 100;
 
 struct Shaken {
@@ -59,10 +59,11 @@ TEST(OtherWindows, FourASecondEachFromTheSameBlocks) {
   const Shaken b(daemon::table1(), daemon::table1_theta(), kDuration_s);
   std::map<int, std::vector<WindowEstimate>> given;
   const auto keep = [&](const WindowEstimate& e) { given[e.window].push_back(e); };
-  Pipeline pipeline(b.config, keep, keep);
+  Pipeline pipeline(b.config);
   for (int t = 0; t < b.accel.rows(); ++t)
-    for (int a = 0; a < b.accel.cols(); ++a) pipeline.push(test::sample_at(b.accel, 100, t, a));
-  pipeline.finish();
+    for (int a = 0; a < b.accel.cols(); ++a)
+      each_window(pipeline.push(test::sample_at(b.accel, 100, t, a)), keep);
+  each_window(pipeline.finish(), keep);
 
   const std::vector<int> rows = pipeline.other_window_rows();
   ASSERT_EQ(rows, (std::vector<int>{100, 250, 1000}));
@@ -139,8 +140,8 @@ TEST(HeldValues, ADyingChannelLeavesTheRestAlone) {
 }
 
 TEST(Reasons, AStiffFloorAndASymmetricPlanAreToldApart) {
-  // GIVEN one building with floors a hundred times too stiff to be seen, and one whose frames are
-  // all alike
+  // GIVEN a building with floors a hundred times too stiff to be seen, and one whose frames are all
+  // alike
   const Structure s = daemon::table2();
   Eigen::VectorXd stiff = daemon::table2_theta('d');
   const ParameterTable table(s);
@@ -174,7 +175,7 @@ TEST(MeasuredNoise, IsFoundAndUsedWhenNobodyConfiguredIt) {
     truth.push_back(axis.noise_density);
     axis.noise_density = 0;
   }
-  Pipeline pipeline(b.config, [](const WindowEstimate&) {});
+  Pipeline pipeline(b.config);
   for (int t = 0; t < b.accel.rows(); ++t)
     for (int a = 0; a < b.accel.cols(); ++a) pipeline.push(test::sample_at(b.accel, 100, t, a));
   pipeline.finish();
