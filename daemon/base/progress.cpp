@@ -9,8 +9,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/files/bytes_read.h"
 #include "drivers/files/caught.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -2,8 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/records/accel_unit.h"
-#include "drivers/records/time_text.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::daemon {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/formats/record_file.h"
 
 namespace framewatch::daemon {

@@ -6,8 +6,8 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/record_file_arguments.h"
+#include "drivers/files/input_file.h"
 #include "drivers/files/standard_streams.h"
-#include "drivers/files/unpack_limit.h"
 #include "drivers/records/record_options.h"
 
 namespace framewatch::daemon {

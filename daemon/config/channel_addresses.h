@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "daemon/config/sections/settings.h"
-#include "drivers/lcm/accel_messages.h"
+#include "drivers/lcm/accel_codec.h"
 
 namespace framewatch::daemon {
 

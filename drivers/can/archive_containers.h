@@ -6,7 +6,7 @@
 
 namespace framewatch::drivers {
 
-/// Writes or reads the state (estimator/state/archive.h) of a vector whose length varies.
+/// Writes or reads the state (estimator/state/archive.h) of a vector of variable length.
 template <typename Archive, typename T>
 void archive_vector(Archive& a, std::vector<T>& values) {
   const std::size_t size = a.count(values.size());
@@ -14,7 +14,7 @@ void archive_vector(Archive& a, std::vector<T>& values) {
   for (T& value : values) a(value);
 }
 
-/// The same for an optional.
+/// Writes or reads the state of an optional.
 template <typename Archive, typename T>
 void archive_optional(Archive& a, std::optional<T>& value) {
   bool has_value = value.has_value();

@@ -8,10 +8,10 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr double kOnTime = 0.25;         ///< of a period after it is due
+constexpr double kOnTime = 0.25;         ///< periods after it is due
 constexpr int kEndOfPause = 2;           ///< frames on time that end a pause
-constexpr std::size_t kMaxWaiting = 64;  ///< frames that wait
-constexpr double kNextTolerance = 0.5;   ///< of a period, by which the next frame may seem early
+constexpr std::size_t kMaxWaiting = 64;  ///< frames
+constexpr double kNextTolerance = 0.5;   ///< periods by which the next frame may seem early
 constexpr double kGridTolerance = 0.05;
 
 }  // namespace
@@ -22,7 +22,7 @@ void ArrivalNumbering::add(double since, double tolerance) {
   const bool alone = latest > before;
   bool repeated = false;
   if (latest <= different_) {
-    // No number is left: its due time is uncertain, or it came twice.
+    // All numbers are taken: its due time is uncertain, or it came twice.
     repeated = since + kNextTolerance < static_cast<double>(different_ + 1);
     latest = repeated ? before : different_ + 1;
   }

@@ -75,7 +75,7 @@ void CanEncoder::add_node(std::size_t index, const std::vector<double>& values,
   }
 }
 
-double CanEncoder::quantised(int axis, double value) const {
+double CanEncoder::quantized(int axis, double value) const {
   for (const CanNodeMap& node : map_.nodes)
     for (const CanMessageMap& m : node.messages)
       for (const CanReading& r : m.readings) {

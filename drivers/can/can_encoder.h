@@ -8,31 +8,34 @@
 
 namespace framewatch::drivers {
 
+/// A frame and the index of its bus.
 struct BusFrame {
   int bus = 0;
   CanFrame frame;
 };
 
-/// What the nodes of a map would send: the inverse of CanIntake, for virtual buildings and tests.
+/// Makes the frames that the nodes of a map would send: the inverse of CanIntake, for virtual
+/// buildings and tests.
 class CanEncoder {
  public:
-  /// `map` must outlive this.
+  /// `map` must outlive this object.
   explicit CanEncoder(const CanMap& map);
 
-  /// Frames of one instant in the order of a bus: the SYNC of every bus that has latched nodes,
-  /// then the nodes by id. `values` by axis, in the signals' unit, clamped to their range; a node
-  /// with a NaN sends nothing then, though its counter goes on. Stamps are left 0.
+  /// Returns the frames of the next instant in the order of a bus: the SYNC of every bus with nodes
+  /// that sample at it, then the nodes by id. `values` are by axis in the unit of the signals and
+  /// are clamped to their range. A node with a NaN sends no frame, though its counter goes on.
+  /// Stamps are 0.
   std::vector<BusFrame> instant(const std::vector<double>& values);
 
-  /// A value as it comes back after its way over the bus.
-  double quantised(int axis, double value) const;
+  /// Returns a value as CanIntake decodes it after encoding.
+  double quantized(int axis, double value) const;
 
  private:
   void add_node(std::size_t index, const std::vector<double>& values, std::vector<BusFrame>& out);
 
   const CanMap& map_;
-  std::vector<std::size_t> order_;          ///< nodes, by the id that opens their sample
-  std::vector<std::vector<double>> block_;  ///< by node: values of the instants of one frame
+  std::vector<std::size_t> order_;          ///< nodes by the id that opens their sample
+  std::vector<std::vector<double>> block_;  ///< by node: values for one frame
   std::int64_t instant_ = 0;
 };
 

@@ -8,9 +8,9 @@
 namespace framewatch::drivers {
 namespace {
 
-/// Of the node's period: how soon the rest of a sample must follow the frame that opens it.
+/// The other frames of a sample must follow the one that opens it within this share of the period.
 constexpr double kAttachWindow = 0.5;
-constexpr std::int64_t kLook_us = 1'000'000;
+constexpr std::int64_t kCheck_us = 1'000'000;
 constexpr std::int64_t kMaxStamp_us = 4'000'000'000'000'000'000;  // sums do not overflow
 
 double modulus_of(const CanNodeMap& node) {
@@ -32,6 +32,30 @@ StreamTimer::Settings settings_of(const CanNodeMap& node) {
 }
 
 }  // namespace
+
+FrameLookup::FrameLookup(const CanMap& map, int bus) {
+  for (std::size_t n = 0; n < map.nodes.size(); ++n) {
+    if (map.nodes[n].bus != bus) continue;
+    for (std::size_t m = 0; m < map.nodes[n].messages.size(); ++m) {
+      const CanMessageMap& message = map.nodes[n].messages[m];
+      auto at = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) {
+        return g.mask == message.mask && g.extended == message.extended;
+      });
+      if (at == groups_.end()) at = groups_.insert(at, Group{message.mask, message.extended, {}});
+      at->targets[message.id & message.mask].push_back({static_cast<int>(n), static_cast<int>(m)});
+    }
+  }
+}
+
+const std::vector<FrameLookup::Target>& FrameLookup::find(std::uint32_t id, bool extended) const {
+  static const std::vector<Target> kNone;
+  for (const Group& group : groups_) {
+    if (group.extended != extended) continue;
+    const auto at = group.targets.find(id & group.mask);
+    if (at != group.targets.end()) return at->second;
+  }
+  return kNone;
+}
 
 CanIntake::CanIntake(const CanMap& map, Sink sink, Observer observer)
     : map_(map), sink_(std::move(sink)), observer_(std::move(observer)) {
@@ -83,8 +107,8 @@ void CanIntake::frame(int index, const CanFrame& frame) {
   CanBusCounters& counters = bus_counters_[static_cast<std::size_t>(index)];
   Bus& bus = buses_[static_cast<std::size_t>(index)];
   newest_stamp_us_ = std::max(newest_stamp_us_, frame.stamp_us);
-  if (frame.stamp_us >= next_look_us_ || frame.stamp_us < next_look_us_ - kLook_us)
-    look(frame.stamp_us);
+  if (frame.stamp_us >= next_check_us_ || frame.stamp_us < next_check_us_ - kCheck_us)
+    check_nodes(frame.stamp_us);
   const bool was_off = counters.state == CanBusState::off;
   if (frame.error)
     count_error_frame(frame, counters);
@@ -113,7 +137,7 @@ void CanIntake::frame(int index, const CanFrame& frame) {
     message(target.node, target.message, frame, host_us);
 }
 
-/// Boot-up and heartbeat, EMCY. False: none of our nodes'.
+/// Handles boot-up, heartbeat and EMCY. Returns false for a frame of no configured node.
 bool CanIntake::canopen(int bus, const CanFrame& frame) {
   if (frame.extended || frame.fd || (frame.id & 0x7Fu) == 0) return false;
   const int id = static_cast<int>(frame.id & 0x7Fu);
@@ -143,15 +167,15 @@ void CanIntake::notice(const CanNotice& notice) const {
   if (notice_) notice_(notice);
 }
 
-/// Judges the numbers of every node.
-void CanIntake::look(std::int64_t stamp_us) {
+/// Sends notices when the numbers of a node begin or cease to be in trouble.
+void CanIntake::check_nodes(std::int64_t stamp_us) {
   using Kind = CanNotice::Kind;
-  next_look_us_ = std::clamp(stamp_us, -kMaxStamp_us, kMaxStamp_us) + kLook_us;
+  next_check_us_ = std::clamp(stamp_us, -kMaxStamp_us, kMaxStamp_us) + kCheck_us;
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const CanNodeCounters c = node(n);
     const bool counts = map_.nodes[n].timing != CanTiming::period;
     const SequenceWatch::Counts seen{c.received, c.lost, c.duplicates, counts ? c.restarts : 0, 0};
-    for (const auto& news : nodes_[n].watch.look(seen, stamp_us)) {
+    for (const auto& news : nodes_[n].watch.update(seen, stamp_us)) {
       if (!news) continue;
       const Kind kind = news->trouble == SequenceTrouble::leaps        ? Kind::sequence_leap
                         : news->trouble == SequenceTrouble::duplicates ? Kind::duplicates
@@ -218,7 +242,7 @@ void CanIntake::place(Node& node, int at, const CanFrame& frame, TimedValues val
   node.timer->open_sample(reading, host_us, std::move(values));
 }
 
-/// False for what a state file may hold.
+/// Returns false for values, read from a state file, that do not fit the map.
 bool CanIntake::known(const TimedValues& v) const {
   if (v.node < 0 || static_cast<std::size_t>(v.node) >= map_.nodes.size()) return false;
   const std::vector<CanMessageMap>& messages =

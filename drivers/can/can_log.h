@@ -1,30 +1,42 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drivers/can/can_frame.h"
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/files/text_output.h"
-#include "drivers/records/record.h"
 
 namespace framewatch::drivers {
 
-/// Bytes of a candump line besides its data, about.
+/// Parses a line as `candump -l` writes it: "(1631416514.717133) can0 0D0#A8FF00000000FF01". Ids of
+/// eight digits have 29 bits. "##" with a digit of flags marks CAN FD and "#R" a remote frame; the
+/// flag 20000000 in an id marks an error frame. Returns false and sets `rule` to the rule that the
+/// line breaks.
+bool parse_candump_line(std::string_view line, CanFrame& frame, std::string_view& interface,
+                        std::string& rule);
+
+/// Returns the line that `candump -l` would write, without a line end.
+std::string candump_line(const CanFrame& frame, std::string_view interface);
+
+/// Approximate bytes of a candump line without its data.
 inline constexpr std::int64_t kCandumpLineBytes = 29;
 
-/// Whether a file begins as a `candump -l` log does.
+/// Returns true if a file begins like a `candump -l` log.
 bool looks_like_candump(const std::string& path);
 
-/// Gives every frame of a `candump -l` log (plain or gzip) to `take`, with the interface's name.
-/// Lines that are no frame are problems at path:line, the first 20 of them, and left out. False
-/// when there was a problem.
+/// Calls `take` for every frame of a `candump -l` log, plain or gzip, with the name of its
+/// interface. Returns false when there was a problem. Skips lines that are not frames and appends a
+/// problem at path:line for the first 20 of them.
 bool read_candump(const std::string& path,
                   const std::function<void(const CanFrame&, std::string_view interface)>& take,
                   std::vector<Problem>& problems);
 
-/// Writes frames as `candump -l` does. The file is PATH.partial until close().
+/// Writes frames as `candump -l` does. The file is PATH.partial until close(). Each function
+/// returns false and sets error() when the system refuses.
 class CanLogWriter {
  public:
   [[nodiscard]] bool open(const std::string& path) { return out_.open(path); }

@@ -6,58 +6,59 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/can_field.h"
+#include "drivers/can/can_frame.h"
 
 namespace framewatch::drivers {
 
-/// What says when a node's samples were taken.
+/// The source of the sampling times of a node.
 enum class CanTiming {
   sync,     ///< the SYNC before the frame (CANopen)
   clock,    ///< a time in the node's frames
-  counter,  ///< a sample counter in the node's frames, times the period
-  period,   ///< nothing: the frames' arrival and the period
+  counter,  ///< a sample counter in the node's frames times the period
+  period,   ///< the arrival of the frames and the period
 };
 
-/// One signal of a message and which sensor axis it is.
+/// One signal of a message and its sensor axis.
 struct CanReading {
   CanField field;
   int axis = 0;
-  int sample = 0;  ///< of those in one frame, from 0
+  int sample = 0;  ///< index among the samples of one frame
   std::string name;
-  /// Physical values outside are no measurement: no instant of the grid is made of them.
+  /// Physical values outside are not measurements; resampling ignores them.
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
 };
 
-/// One message of a node, at one value of its multiplexor if it has one.
+/// One message of a node; of a multiplexed message, one value of the multiplexor.
 struct CanMessageMap {
   std::string name;
   std::uint32_t id = 0;
   std::uint32_t mask = 0;  ///< bits of the id that must agree
   bool extended = false;
-  int length = 0;   ///< bytes; another length is a wrong one
+  int length = 0;   ///< bytes; frames of another length are rejected
   bool fd = false;  ///< must come as a CAN FD frame
   std::optional<CanField> multiplexor;
   std::int64_t multiplexor_value = 0;
   std::vector<CanReading> readings;
-  std::optional<CanField> counter;  ///< the node's, in this message
-  std::optional<CanField> clock;
+  std::optional<CanField> counter;  ///< sample counter of the node
+  std::optional<CanField> clock;    ///< clock of the node
 };
 
-/// A device that sends samples: an accelerometer with one to three axes, mostly.
+/// A device that sends samples, usually an accelerometer with one to three axes.
 struct CanNodeMap {
   std::string name;
   int bus = 0;
-  std::vector<CanMessageMap> messages;  ///< the first one opens a sample, the others add to it
+  std::vector<CanMessageMap> messages;  ///< the first one opens a sample, the others extend it
   CanTiming timing = CanTiming::period;
   double period_us = 10000;  ///< between samples
   double clock_unit_us = 1;  ///< microseconds per unit of the clock's physical value
-  double delay_us = 0;       ///< sampling instant after the SYNC
+  double delay_us = 0;       ///< from the SYNC to the sampling instant
   double latency_us = 0;     ///< from the sampling instant to the frame's arrival on an idle bus
   int samples_per_frame = 1;
-  int canopen_id = 0;  ///< 1..127: its EMCY, boot-up and heartbeat are seen; 0: none
+  int canopen_id = 0;  ///< 1..127 to follow its EMCY, boot-up and heartbeat; 0: not CANopen
 };
 
+/// A bus and its settings.
 struct CanBusMap {
   std::string interface;
   bool fd = false;
@@ -66,23 +67,22 @@ struct CanBusMap {
   double sync_period_us = 10000;
   bool send_sync = false;
   bool nmt_start = false;
-  std::int16_t sync_overflow = 0;  ///< the SYNC carries a counter from 1 to this; 0: none
+  std::int16_t sync_overflow = 0;  ///< the SYNC counts from 1 to this; 0: no counter
   int receive_buffer_bytes = 2097152;
 };
 
-/// How samples are read from the buses: what the configuration and its DBC files say.
+/// Says how to read samples from the buses, from the configuration and its DBC files.
 struct CanMap {
   std::vector<CanBusMap> buses;
   std::vector<CanNodeMap> nodes;
-  double grid_period_us = 10000;  ///< of the estimator
-  /// Nodes with clocks of their own are brought to instants that are multiples of the grid's
-  /// period.
+  double grid_period_us = 10000;  ///< between the instants of the estimator
+  /// Resamples nodes with their own clocks to multiples of grid_period_us.
   bool resample = false;
 
   bool empty() const { return nodes.empty(); }
 };
 
-/// Whether a frame with this id is the message.
+/// Returns true if a frame with this id carries the message.
 inline bool matches(const CanMessageMap& message, std::uint32_t id, bool extended) {
   return extended == message.extended && ((id ^ message.id) & message.mask) == 0;
 }

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kBatch = 64;
 constexpr std::size_t kControl = 256;
-/// A controller's stamp farther than this from the kernel's belongs to a new start of its clock.
+/// The controller's clock was reset when its stamp is farther than this from the kernel's.
 constexpr double kControllerJump_us = 50'000;
 
 std::int64_t microseconds(const timespec& t) {
@@ -101,7 +101,7 @@ bool CanSocket::open(const std::string& interface, int receive_buffer_bytes,
     (void)set(SOL_SOCKET, SO_RCVBUF, receive_buffer_bytes);
   socklen_t size = sizeof made.buffer_bytes_;
   ::getsockopt(made.fd_, SOL_SOCKET, SO_RCVBUF, &made.buffer_bytes_, &size);
-  made.buffer_bytes_ /= 2;  // the kernel tells twice what it grants
+  made.buffer_bytes_ /= 2;  // the kernel reports twice the size
   (void)set(SOL_SOCKET, SO_RXQ_OVFL, 1);
   if (!set(SOL_SOCKET, SO_TIMESTAMPING,
            SOF_TIMESTAMPING_SOFTWARE | SOF_TIMESTAMPING_RX_SOFTWARE |

@@ -9,14 +9,14 @@
 
 namespace framewatch::drivers {
 
-/// What the kernel lets through: an id and the bits of it that must agree.
+/// Lets frames through whose id agrees with `id` in the bits of `mask`.
 struct CanFilter {
   std::uint32_t id = 0, mask = 0;
   bool extended = false;
 };
 
-/// A raw CAN socket, or any descriptor of sequenced packets that carry struct can_frame and struct
-/// canfd_frame. Non-blocking; owns the descriptor.
+/// Reads and writes a raw CAN socket, or any descriptor of sequenced packets with struct can_frame
+/// and struct canfd_frame. Non-blocking; owns the descriptor.
 class CanSocket {
  public:
   enum class Read { frames, idle, down, failed };
@@ -27,23 +27,24 @@ class CanSocket {
   CanSocket& operator=(CanSocket&& other) noexcept;
   ~CanSocket();
 
-  /// False with the reason when there is no such interface or no CAN here. An interface that is
-  /// down can be opened: reading says `down` once.
+  /// Opens an interface. `own_frames` also receives the frames sent here. Returns false and sets
+  /// `error` when there is no such interface, or no CAN in this kernel. An interface that is down
+  /// can be opened; read() then returns `down` once.
   [[nodiscard]] bool open(const std::string& interface, int receive_buffer_bytes,
                           const std::vector<CanFilter>& filters, bool own_frames,
                           std::string& error);
   bool is_open() const { return fd_ >= 0; }
   int descriptor() const { return fd_; }
   int interface_index() const { return index_; }
-  /// What the kernel granted.
+  /// Returns the bytes that the kernel granted.
   int receive_buffer_bytes() const { return buffer_bytes_; }
 
-  /// Takes up to a batch of frames. Stamps are the controller's, brought to the host's clock, where
-  /// it gives any, else the kernel's.
+  /// Reads the waiting frames, at most 64. Stamps come from the controller, converted to the host's
+  /// clock, if it has them, else from the kernel.
   [[nodiscard]] Read read(std::vector<CanFrame>& frames);
-  /// Frames the kernel dropped because nobody read them in time.
+  /// Returns the frames that the kernel dropped because they were not read in time.
   std::int64_t dropped() const { return dropped_; }
-  /// False when the frame cannot be sent now; errno says why.
+  /// Sends a frame. Returns false with errno when it cannot be sent now.
   [[nodiscard]] bool write(const CanFrame& frame) const;
 
  private:
@@ -52,10 +53,10 @@ class CanSocket {
   int fd_ = -1, index_ = 0, buffer_bytes_ = 0;
   std::uint32_t dropped_before_ = 0;
   std::int64_t dropped_ = 0;
-  LowerEnvelopeClock controller_{};  ///< the clock of the controller's stamps
+  LowerEnvelopeClock controller_{};  ///< clock of the controller's stamps
 };
 
-/// Index of a network interface, 0 when there is none, and whether it is up.
+/// Returns the index of a network interface, or 0 when it does not exist. Sets `up`.
 int find_interface(const std::string& name, bool& up);
 
 }  // namespace framewatch::drivers

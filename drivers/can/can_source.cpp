@@ -1,9 +1,12 @@
 #include "drivers/can/can_source.h"
 
 #include <sys/timerfd.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <utility>
 
 #include <fmt/core.h>
@@ -11,8 +14,8 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::int64_t kLookAgain_us = 50'000;
-constexpr int kBatches = 64;  ///< of frames from one bus before the others have their turn
+constexpr std::int64_t kPollAgain_us = 50'000;
+constexpr int kBatches = 64;  ///< read from one bus before the others have their turn
 constexpr std::uint8_t kNmtStart = 1;
 
 bool is_latched(const CanMap& map, std::size_t bus) {
@@ -33,6 +36,52 @@ int make_timer(double period_us) {
 }
 
 }  // namespace
+
+void ContinuousStamps::now(const HostClockReading& reading) {
+  // A doubtful reading would look like a step, and the next one like a step back.
+  if (started_ && reading.doubtful_us > kStep_us / 4) return;
+  const std::int64_t change_us = reading.offset_us - offset_us_;
+  const bool step = started_ && std::abs(change_us) >= kStep_us;
+  started_ = true;
+  offset_us_ = reading.offset_us;
+  if (step) {
+    before_us_ = total_us_;
+    total_us_ += change_us;
+    ++steps_;
+  }
+  newest_us_ = reading.day_us - total_us_;
+}
+
+std::int64_t ContinuousStamps::continuous(std::int64_t stamp_us) {
+  const std::int64_t after = stamp_us - total_us_, before = stamp_us - before_us_;
+  const std::int64_t oldest = std::max(last_us_, drained_us_) - kStep_us;
+  const auto possible = [&](std::int64_t us) {
+    return us >= oldest && us <= newest_us_ + kStep_us;
+  };
+  const bool nearer = std::abs(before - last_us_) < std::abs(after - last_us_);
+  const bool earlier =
+      steps_ > 0 && (possible(before) == possible(after) ? nearer : possible(before));
+  last_us_ = earlier ? before : after;
+  return last_us_;
+}
+
+HostClockReading read_host_clock() {
+  constexpr int kTries = 20;
+  constexpr std::int64_t kClose_us = 20;
+  const auto read = [](clockid_t clock) {
+    timespec time{};
+    ::clock_gettime(clock, &time);
+    return 1'000'000 * std::int64_t{time.tv_sec} + time.tv_nsec / 1000;
+  };
+  // An interruption of the process between two readings must not look like a step.
+  HostClockReading closest{0, 0, INT64_MAX};
+  for (int i = 0; i < kTries && closest.doubtful_us > kClose_us; ++i) {
+    const std::int64_t before = read(CLOCK_MONOTONIC), day = read(CLOCK_REALTIME);
+    const std::int64_t apart = read(CLOCK_MONOTONIC) - before;
+    if (apart < closest.doubtful_us) closest = {day, day - before - apart / 2, apart};
+  }
+  return closest;
+}
 
 std::vector<CanFilter> filters_of(const CanMap& map, int bus) {
   std::vector<CanFilter> out;
@@ -77,7 +126,7 @@ std::vector<std::string> CanSource::open() {
     if (buses_[b].attached) continue;
     const CanBusMap& settings = map_.buses[b];
     std::string error;
-    look(b, 0);
+    poll_interface(b, 0);
     const Bus& bus = buses_[b];
     if (!bus.socket.is_open()) {
       (void)open_bus(b, error);
@@ -113,11 +162,11 @@ void CanSource::lose(Bus& bus) {
   bus.state.open = false;
 }
 
-/// Whether the interface came, went or is another one of the same name.
-void CanSource::look(std::size_t b, std::int64_t now_us) {
+/// Notices an interface that came, went, or was replaced by another one of the same name.
+void CanSource::poll_interface(std::size_t b, std::int64_t now_us) {
   Bus& bus = buses_[b];
-  if (bus.attached || now_us < bus.look_again_us) return;
-  bus.look_again_us = now_us + kLookAgain_us;
+  if (bus.attached || now_us < bus.poll_again_us) return;
+  bus.poll_again_us = now_us + kPollAgain_us;
   bool up = false;
   const int index = find_interface(map_.buses[b].interface, up);
   if (bus.socket.is_open() && index != bus.socket.interface_index()) {
@@ -164,12 +213,12 @@ void CanSource::read(std::size_t b) {
       case CanSocket::Read::idle:
         return bus.stamps.drained();
       case CanSocket::Read::down:
-        bus.look_again_us = 0;
+        bus.poll_again_us = 0;
         return lose(bus);
       case CanSocket::Read::failed:
         bus.dropped_before += bus.socket.dropped();
         bus.socket = CanSocket();
-        bus.look_again_us = 0;
+        bus.poll_again_us = 0;
         return lose(bus);
     }
     for (CanFrame& frame : batch_) {
@@ -185,7 +234,7 @@ void CanSource::read(std::size_t b) {
 
 void CanSource::handle(std::int64_t now_us) {
   for (std::size_t b = 0; b < buses_.size(); ++b) {
-    look(b, now_us);
+    poll_interface(b, now_us);
     if (buses_[b].timer >= 0) send_sync(b);
     if (buses_[b].socket.is_open()) read(b);
   }

@@ -32,7 +32,7 @@ void LowerEnvelopeClock::add(double device_us, double host_us) {
 
 void LowerEnvelopeClock::fit() {
   if (lowest_.size() >= kForRate) {
-    // Stamps may come out of order.
+    // Stamps may arrive out of order.
     std::vector<Point> points = lowest_;
     std::sort(points.begin(), points.end(),
               [](const Point& a, const Point& b) { return a.x < b.x; });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -7,19 +8,21 @@
 
 namespace framewatch::drivers {
 
-/// Linear model of a device's clock: host = a + b * device, both microseconds. A frame is never
-/// stamped before it was sent, so the model is the lower envelope of the receive stamps: an edge of
-/// the lower convex hull of the last 2048. A mean would shift times by the mean delay of a busy
-/// bus. |b - 1| <= 500 ppm.
+/// Models a device's clock: host = a + b * device in microseconds, |b - 1| <= 500 ppm. A frame is
+/// never stamped before it was sent, so the model is the lower envelope of the receive stamps: an
+/// edge of the lower convex hull of the last 2048. A mean would shift times by the mean delay of a
+/// busy bus.
 class LowerEnvelopeClock {
  public:
-  /// Forgets every stamp and keeps the rate; the model goes through this point.
+  /// Drops all stamps and keeps the rate; the model then goes through this point.
   void start(double device_us, double host_us);
+  /// Adds the receive stamp `host_us` of a frame sent at `device_us`.
   void add(double device_us, double host_us);
   bool started() const { return started_; }
 
+  /// Returns the host time at a device time.
   double host_us(double device_us) const;
-  /// Host's microseconds per device's.
+  /// Returns host microseconds per device microsecond.
   double rate() const { return 1 + slope_; }
 
   template <typename Archive>
@@ -29,9 +32,9 @@ class LowerEnvelopeClock {
   }
 
  private:
-  static constexpr int kBucket = 32;           ///< stamps, of which the lowest is kept
-  static constexpr std::size_t kBuckets = 64;  ///< kept
-  static constexpr std::size_t kForRate = 8;   ///< buckets that the rate needs
+  static constexpr int kBucket = 32;           ///< stamps of which the lowest is kept
+  static constexpr std::size_t kBuckets = 64;  ///< buckets kept
+  static constexpr std::size_t kForRate = 8;   ///< buckets needed for the rate
   static constexpr double kMaxSlope = 500e-6;
 
   struct Point {
@@ -48,9 +51,44 @@ class LowerEnvelopeClock {
   bool started_ = false;
   double device0_us_ = 0, host0_us_ = 0;
   double offset_ = 0, slope_ = 0;
-  std::vector<Point> lowest_;  ///< of the closed buckets, oldest first
+  std::vector<Point> lowest_;  ///< one for each full bucket, oldest first
   Point current_{};
   int in_bucket_ = 0;
+};
+
+/// Follows a clock model without jumps, so that equal steps stay nearly equal when the offset of
+/// the model is corrected. Times run at most 0.2 % faster or slower than the model.
+class SlewLimiter {
+ public:
+  /// Takes the next time from the model unchanged.
+  void reset() { started_ = false; }
+
+  /// Returns the host time to use for `device_us`, where the model says `model_us` and runs at
+  /// `rate`. All in microseconds.
+  double follow(double device_us, double model_us, double rate) {
+    const double step_us = device_us - device_us_;
+    const double free_us = kSlew * std::max(0.0, step_us);
+    const double on_us = host_us_ + step_us * rate;
+    const double time_us =
+        started_ ? on_us + std::clamp(model_us - on_us, -free_us, free_us) : model_us;
+    if (!started_ || step_us > 0) {
+      started_ = true;
+      device_us_ = device_us;
+      host_us_ = time_us;
+    }
+    return time_us;
+  }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(started_, device_us_, host_us_);
+  }
+
+ private:
+  static constexpr double kSlew = 0.002;
+
+  bool started_ = false;
+  double device_us_ = 0, host_us_ = 0;  ///< newest time returned
 };
 
 }  // namespace framewatch::drivers

@@ -32,7 +32,8 @@ bool Resampler::has(std::int64_t number) {
   return number >= 0 && slot(number).number == number && std::isfinite(slot(number).value);
 }
 
-/// Cubic through two neighbours on each side, of which none may be filled itself.
+/// Fills a sample by the cubic through two neighbors on each side. Returns false when one of them
+/// is missing or was filled.
 bool Resampler::fill(std::int64_t number) {
   for (const std::int64_t n : {number - 2, number - 1, number + 1, number + 2})
     if (!has(n) || slot(n).filled) return false;
@@ -80,12 +81,12 @@ void Resampler::add(std::int64_t number, double time_us, double period_us, doubl
     double position = static_cast<double>(number) + (wanted_us - time_us) / period_us;
     auto center = static_cast<std::int64_t>(std::floor(position));
     if (center + kHalf > newest_) return;
-    if (center < newest_ - kKept) {  // at once to the first instant that samples are kept of
+    if (center < newest_ - kKept) {  // skip to the first instant whose samples are kept
       const double behind = static_cast<double>(newest_ - kKept - center - 1) * period_us;
       next_ += static_cast<std::int64_t>(std::max(0.0, behind / grid_us_ - 1));
       continue;
     }
-    // The times of the samples around it are better known than the newest one's extrapolated.
+    // The time of a sample near the instant is more exact than extrapolation from the newest one.
     if (has(center))
       position = static_cast<double>(center) + (wanted_us - slot(center).time_us) / period_us;
     const double fraction = std::clamp(position - static_cast<double>(center), -0.5, 1.5);

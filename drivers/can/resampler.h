@@ -7,10 +7,10 @@
 
 namespace framewatch::drivers {
 
-/// Brings one axis of a free-running node to the instants that are whole multiples of the grid's
-/// period: 10 samples weighted by a Kaiser-windowed sinc, linear in phase, off by less than 1e-4 of
-/// the amplitude up to a fifth of the sampling rate. A single missing sample is filled by the cubic
-/// through its neighbours; at more, the instants that need them have no value.
+/// Resamples one axis of a free-running node to whole multiples of the grid's period. Weights 10
+/// samples by a Kaiser-windowed sinc, which is linear in phase. The error is below 1e-4 of the
+/// amplitude up to a fifth of the sampling rate. Fills a single missing sample by the cubic through
+/// its neighbors; instants that need more missing samples have no value.
 class Resampler {
  public:
   /// `time_us` is a multiple of the grid's period.
@@ -18,9 +18,11 @@ class Resampler {
 
   explicit Resampler(double grid_period_us) : grid_us_(grid_period_us) {}
 
-  /// Sample `number` of the node, taken at `time_us`; `period_us` is between its samples now.
-  /// NaN is a missing sample. Gives out the instants that are complete.
+  /// Adds sample `number` of the node, taken at `time_us`; NaN stands for a missing one.
+  /// `period_us` is the current time between samples. Calls `sink` for the instants that are now
+  /// complete.
   void add(std::int64_t number, double time_us, double period_us, double value, const Sink& sink);
+  /// Returns the number of samples filled so far.
   std::int64_t repaired() const { return repaired_; }
 
   template <typename Archive>
@@ -30,7 +32,7 @@ class Resampler {
 
  private:
   static constexpr std::int64_t kHalf = 5;      ///< taps on each side
-  static constexpr std::int64_t kPatience = 3;  ///< samples to wait for one that is overtaken
+  static constexpr std::int64_t kPatience = 3;  ///< samples to wait for one that comes late
   static constexpr std::size_t kRing = 64;
 
   struct Slot {
@@ -52,7 +54,7 @@ class Resampler {
   std::array<Slot, kRing> ring_{};
   bool started_ = false;
   std::int64_t newest_ = 0;
-  std::int64_t next_ = 0;  ///< instant, in grid periods
+  std::int64_t next_ = 0;  ///< next instant, in grid periods
   std::int64_t repaired_ = 0;
 };
 

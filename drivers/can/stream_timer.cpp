@@ -7,29 +7,53 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::size_t kAgreeing = 5;  ///< held frames that agree lead to a decision
+constexpr std::size_t kAgreeing = 5;  ///< held frames that must agree for a decision
 constexpr double kEarliest_us =
-    -5'000;                             ///< before the clock model: nothing comes before it is sent
+    -5'000;  ///< before the clock model: frames arrive after they were sent
 constexpr double kLatest_us = 30'000;   ///< after it, on a busy bus
 constexpr double kSame_us = 20'000;     ///< by which the lateness of held frames may differ
 constexpr double kMaxLate_us = 2e6;     ///< of a late frame, unless `patience_us` is longer
 constexpr std::int64_t kNoJump = 3;     ///< numbers
 constexpr double kStall_us = 1e6;       ///< lateness of frames that follow an outage, and
 constexpr double kStallOfWrap = 0.125;  ///< of the counter's range: a restart looks like more
-/// Of a period, by which a frame may come before its due time: where the clock model is well known,
-/// and where it is of few frames or of long ago.
+/// Periods by which a frame may come before its due time: with a good clock model, and with one
+/// from few frames or from long ago.
 constexpr double kTolerance = 0.05, kVagueTolerance = 0.25;
 constexpr std::int64_t kFewFrames = 256;
 constexpr double kLongAgo = 100;  ///< periods
 
+// For the start, before there is a clock model:
+constexpr double kStart_us = 200'000;   ///< of frames make the first clock model,
+constexpr std::size_t kStartMost = 20;  ///< but at most this many
+constexpr std::size_t kStartLeast = 3;
+constexpr double kApart_us =
+    2e6;  ///< largest difference of host and device time between two frames of one start
+constexpr double kActive_us = 2e6;       ///< a stream without a frame for this long does not vote
+constexpr double kSameStep_us = 50'000;  ///< by which two streams may see one step differently
+
 }  // namespace
+
+bool HostClockSteps::resolve(double step_us, double now_us) {
+  int active = 0, same = 0;
+  for (const StampedStream* stream : streams_) {
+    const StampedStream::Vote vote = stream->vote(step_us, now_us);
+    active += vote != StampedStream::Vote::abstains;
+    same += vote == StampedStream::Vote::yes;
+  }
+  if (same < 2 || 2 * same < active) return false;
+  total_us_ += step_us;
+  ++count_;
+  for (StampedStream* stream : streams_) stream->shift(step_us);
+  return true;
+}
 
 StreamTimer::StreamTimer(const Settings& settings, HostClockSteps& steps)
     : settings_(settings), steps_(steps) {
   steps_.join(*this);
 }
 
-/// The host time since the last frame tells how often the reading has wrapped.
+/// Returns the device time of a reading. The host time since the last frame tells how often it
+/// wrapped.
 double StreamTimer::device_time_us(double reading, double host_us) const {
   const double period_us = settings_.period_us;
   if (settings_.kind == CanTiming::period) {
@@ -52,8 +76,8 @@ double StreamTimer::most_late_us() const {
   return std::max(kMaxLate_us, settings_.patience_us);
 }
 
-/// Whether no restart is needed to explain the frame: the sender or the adapter was held up, the
-/// clock model began with late frames, or an outage ends with a burst.
+/// Returns true if a frame is explained without a restart: the sender or the adapter was delayed,
+/// the clock model began with late frames, or an outage ends with a burst.
 bool StreamTimer::continues(const Frame& frame) const {
   const std::int64_t jump = frame.values.number - newest_number_;
   const double late = late_us(frame);
@@ -136,7 +160,8 @@ bool StreamTimer::confirm(std::int64_t number) {
   return true;
 }
 
-/// The numbers of the frames held are larger by `shift`.
+/// Adds `shift` to the numbers of the held frames. Returns false when they cannot have these
+/// numbers.
 bool StreamTimer::shift_numbers(std::int64_t shift) {
   if (starting_) return shift == 0;
   if (!opened_is_held_) return shift == 0 || undo_wraps(shift);
@@ -156,7 +181,7 @@ bool StreamTimer::shift_numbers(std::int64_t shift) {
   return true;
 }
 
-/// The frame opened last seemed to fit because it was late by whole wraps of its reading.
+/// Corrects a frame that seemed to fit because it was late by whole wraps of its reading.
 bool StreamTimer::undo_wraps(std::int64_t shift) {
   const double shift_us = settings_.period_us * static_cast<double>(shift);
   if (shift >= 0 || settings_.modulus <= 0 ||
@@ -206,14 +231,14 @@ void StreamTimer::hold(Frame frame) {
   start_anew();
 }
 
-/// The frames held are no restart, only late; those that follow may be late too.
+/// Delivers the held frames, which are late without a restart; the next frames may be late too.
 void StreamTimer::go_on_late() {
   late_ = true;
   late_frames_left_ = static_cast<int>(settings_.patience_us / settings_.period_us);
   deliver_held();
 }
 
-/// The frames held are late, or have no plausible time.
+/// Delivers the held frames as late, and drops those without a plausible time.
 void StreamTimer::deliver_held() {
   const std::vector<Frame> held = std::exchange(held_, {});
   for (const Frame& frame : held) {
@@ -262,6 +287,126 @@ void StreamTimer::finish() {
     finish_start();
   else
     deliver_held();
+}
+
+void StreamTimer::hold_until_started(Frame frame) {
+  if (!held_.empty()) {
+    const double apart_us = (frame.host_us - last_host_us_) - (frame.device_us - last_device_us_);
+    if (std::abs(apart_us) > kApart_us) {
+      unplaced_ += static_cast<std::int64_t>(samples_held());
+      held_.clear();
+      has_last_ = false;
+    }
+  }
+  set_last(frame);
+  held_.push_back(std::move(frame));
+  const auto wanted = std::clamp(static_cast<std::size_t>(kStart_us / settings_.period_us),
+                                 kStartLeast, kStartMost);
+  if (samples_held() >= wanted) finish_start();
+}
+
+/// Begins a new start with the held frames; their numbers continue those before it.
+void StreamTimer::start_anew() {
+  starting_ = true;
+  renumber_ = true;
+  has_last_ = false;
+  for (const Frame& frame : held_)
+    if (frame.opens) set_last(frame);
+}
+
+/// Numbers the first frames together; so far each number came from the time since the frame before.
+void StreamTimer::number_first_frames() {
+  std::vector<double> arrivals;
+  for (const Frame& frame : held_)
+    if (frame.opens)
+      arrivals.push_back((frame.host_us - held_.front().host_us) / settings_.period_us);
+  const std::vector<std::int64_t> numbers = first_numbers(arrivals);
+  const Frame first = held_.front();
+  std::size_t next = 0;
+  std::int64_t number = 0;
+  for (Frame& frame : held_) {
+    if (frame.opens) number = numbers[next++];
+    frame.values.number = first.values.number + number;
+    frame.device_us = first.device_us + settings_.period_us * static_cast<double>(number);
+    if (frame.opens) set_last(frame);
+  }
+  opened_.values.number = held_.back().values.number;
+  opened_.device_us = held_.back().device_us;
+}
+
+void StreamTimer::finish_start() {
+  if (settings_.kind == CanTiming::period && !held_.empty()) {
+    has_last_ = false;
+    number_first_frames();
+  }
+  starting_ = false;
+  clock_frames_ = 0;
+  slew_.reset();
+  std::vector<Frame> held = std::exchange(held_, {});
+  if (held.empty()) return;
+  std::stable_sort(held.begin(), held.end(), [](const Frame& a, const Frame& b) {
+    return a.values.number < b.values.number;
+  });
+  const std::int64_t shift =
+      std::exchange(renumber_, false) ? newest_number_ + 1 - held.front().values.number : 0;
+  last_number_ += shift;
+  opened_.values.number += shift;
+  opened_is_held_ = false;
+  bool first = true;
+  for (const Frame& frame : held) {
+    if (!frame.opens) continue;
+    if (std::exchange(first, false)) clock_.start(frame.device_us, frame.host_us);
+    clock_.add(frame.device_us, frame.host_us);
+  }
+  for (Frame& frame : held) {
+    frame.values.number += shift;
+    deliver(frame);
+  }
+}
+
+void StreamTimer::restart() {
+  number_by_arrival();
+  if (starting_) {
+    held_.clear();
+    has_last_ = false;
+    return;
+  }
+  deliver_held();
+  ++restarts_;
+  start_anew();
+}
+
+StampedStream::Vote StreamTimer::vote(double step_us, double now_us) const {
+  if (settings_.kind == CanTiming::period || now_us - last_host_us_ > kActive_us)
+    return Vote::abstains;
+  if (starting_ || held_.empty()) return Vote::no;
+  const auto last =
+      std::find_if(held_.rbegin(), held_.rend(), [](const Frame& frame) { return frame.opens; });
+  const bool same = last != held_.rend() && std::abs(late_us(*last) - step_us) < kSameStep_us;
+  return same ? Vote::yes : Vote::no;
+}
+
+void StreamTimer::shift(double step_us) {
+  if (starting_ || settings_.kind == CanTiming::period) {
+    // It is unknown which of the frames were stamped after the step.
+    arrivals_ = {};
+    unnumbered_.clear();
+    if (!starting_) start_anew();
+    held_.clear();
+    has_last_ = false;
+    return;
+  }
+  last_host_us_ = clock_.host_us(last_device_us_);
+  clock_.start(last_device_us_, last_host_us_);
+  std::vector<Frame> held = std::exchange(held_, {});
+  for (Frame& frame : held) {
+    frame.host_us -= step_us;
+    if (!frame.opens || !fits(late_us(frame))) continue;
+    clock_.add(frame.device_us, frame.host_us);
+    set_last(frame);
+  }
+  for (const Frame& frame : held) deliver(frame);
+  opened_is_held_ = false;
 }
 
 }  // namespace framewatch::drivers

@@ -7,12 +7,13 @@
 namespace framewatch::drivers {
 namespace {
 
-/// Of the SYNC's period: a frame that comes later after the SYNC may belong to another one.
+/// A frame that comes later after the SYNC than this share of the period may belong to another
+/// SYNC.
 constexpr double kWindow = 0.95;
-/// The sender of the SYNC may be held up, and no other stream tells the time.
+/// The sender of the SYNC may be delayed, and no other stream gives the time.
 constexpr double kPatience_us = 30e6;
-constexpr int kAgreeing =
-    5;  ///< frames in a row with which a node's counter is taken to have begun anew
+/// Disagreements in a row after which a node's counter counts as restarted.
+constexpr int kRestartedAfter = 5;
 constexpr std::size_t kMaxUnassigned = 8;
 
 StreamTimer::Settings settings_of(const CanBusMap& bus) {
@@ -20,13 +21,13 @@ StreamTimer::Settings settings_of(const CanBusMap& bus) {
           bus.sync_period_us, static_cast<double>(bus.sync_overflow), kPatience_us};
 }
 
-/// `value` in [0, 2^bits).
+/// Returns `value` modulo 2^bits in [0, 2^bits).
 std::int64_t wrapped(std::int64_t value, const CanField& counter) {
   const std::int64_t modulus = std::int64_t{1} << std::min(counter.bits, 62);
   return (value % modulus + modulus) % modulus;
 }
 
-/// `value` in [-2^(bits-1), 2^(bits-1)).
+/// Returns `value` modulo 2^bits in [-2^(bits-1), 2^(bits-1)).
 std::int64_t nearest_zero(std::int64_t value, const CanField& counter) {
   const std::int64_t modulus = std::int64_t{1} << std::min(counter.bits, 62);
   const std::int64_t rest = wrapped(value, counter);
@@ -89,11 +90,11 @@ void SyncMatcher::flush() {
   }
 }
 
-/// Numbers the SYNC as the counters of most nodes do. When it cannot have that number, the SYNC's
-/// numbers began anew, or those of all nodes did.
+/// Numbers the SYNC as the counters of most nodes do. When it cannot have that number, the numbers
+/// of the SYNC restarted, or the counters of all nodes did.
 void SyncMatcher::vote_on_number() {
   const std::int64_t number = timer_.opened_number();
-  std::map<std::int64_t, int> votes;  // by what is to be added to `number`
+  std::map<std::int64_t, int> votes;  // by the difference to `number`
   int voters = 0;
   for (const Stream& s : streams_) {
     if (s.counter_at_sync < 0) continue;
@@ -119,15 +120,16 @@ bool SyncMatcher::belongs_to_sync(Stream& s, const Arrived& arrived) {
     s.disagreements = 0;
     return true;
   }
-  if (!arrived.in_window || (s.counter_at_sync >= 0 && ++s.disagreements < kAgreeing)) return false;
+  if (!arrived.in_window || (s.counter_at_sync >= 0 && ++s.disagreements < kRestartedAfter))
+    return false;
   s.counter_at_sync = at_sync;
   s.disagreements = 0;
   assign_kept(s);
   return true;
 }
 
-/// So long after a SYNC the frames may belong to the next SYNC, lost: the node's first frame within
-/// the window will tell.
+/// Keeps frames that may belong to the next SYNC, which was lost, until the first frame of the node
+/// within the window decides.
 void SyncMatcher::keep_unassigned(Stream& s) {
   for (auto* arrived : {&s.first, &s.last}) {
     if (!*arrived) continue;
@@ -142,13 +144,13 @@ void SyncMatcher::keep_unassigned(Stream& s) {
 
 void SyncMatcher::assign_kept(Stream& s) {
   for (Arrived& a : std::exchange(s.unassigned, {})) {
-    const bool its = wrapped(a.counter - a.values.number, *s.counter) == s.counter_at_sync;
-    s.late += !(its && timer_.attach_earlier(std::move(a.values)));
+    const bool matches_sync = wrapped(a.counter - a.values.number, *s.counter) == s.counter_at_sync;
+    s.late += !(matches_sync && timer_.attach_earlier(std::move(a.values)));
   }
 }
 
-/// A node without a counter that sent no frame after the last SYNC and two after this one: the
-/// first of them is late.
+/// Delivers the frame of the SYNC and counts the others. When a node without a counter sent no
+/// frame after the last SYNC and two after this one, the first of them is late.
 void SyncMatcher::deliver(Stream& s) {
   const auto in_window = [](const std::optional<Arrived>& a) { return a && a->in_window; };
   if (s.counter && s.counter_at_sync < 0 && !in_window(s.first) && !in_window(s.last))

@@ -10,22 +10,24 @@
 
 namespace framewatch::drivers {
 
-/// Assigns the frames of a bus' nodes that sample at the SYNC to their SYNC: the last one before
-/// the frame, or the one that the node's counter tells. When SYNCs come late or get lost, the
-/// counters of most nodes tell the SYNC's number.
+/// Assigns frames of the nodes that sample at the SYNC to their SYNC: the last one before the
+/// frame, or the one that the counter of the node names. When SYNCs come late or are lost, the
+/// counters of most nodes give the number of the SYNC.
 class SyncMatcher {
  public:
-  /// `deliver` gets every frame's values with the number and time of its SYNC.
+  /// `map` must outlive this object. `deliver` gets the values of every frame with number and time
+  /// of its SYNC.
   SyncMatcher(const CanMap& map, int bus, HostClockSteps& steps, StreamTimer::Deliver deliver);
 
-  /// The SYNC of the bus.
+  /// Takes a SYNC of the bus.
   void sync(const CanFrame& frame, double host_us);
-  /// A frame of a node of this bus.
+  /// Takes a frame of a node of this bus.
   void add(const CanFrame& frame, double host_us, TimedValues values);
+  /// Ends the input and delivers the frames after the last SYNC.
   void finish();
 
   double period_us() const { return timer_.period_us(); }
-  /// Adds the late, repeated and unplaced frames of the node.
+  /// Adds the late, repeated and unplaced frames of the node to `counters`.
   void count(int node, CanNodeCounters& counters) const;
 
   template <typename Archive>
@@ -51,9 +53,9 @@ class SyncMatcher {
     std::optional<Arrived> first, last;  ///< since the SYNC
     int count = 0;
     bool came_after_last_sync = true;
-    std::int64_t counter_at_sync = -1;  ///< counter minus the SYNC's number; -1: not known
-    std::vector<Arrived> unassigned;    ///< long after a SYNC, before counter_at_sync is known
-    int disagreements = 0;              ///< in a row, of counter and SYNC
+    std::int64_t counter_at_sync = -1;  ///< counter minus number of the SYNC; -1: unknown
+    std::vector<Arrived> unassigned;    ///< came long after a SYNC while counter_at_sync is unknown
+    int disagreements = 0;              ///< of counter and SYNC, in a row
     std::int64_t late = 0, duplicates = 0, unplaced = 0;
 
     template <typename Archive>

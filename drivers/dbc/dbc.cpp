@@ -2,22 +2,168 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstdint>
 #include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
 
-#include "drivers/dbc/dbc_scanner.h"
 #include "drivers/files/file_problems.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {
 namespace {
 
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Walks through the text of a DBC file word by word. A function that does not find what it looks
+/// for consumes nothing.
+class DbcScanner {
+ public:
+  explicit DbcScanner(std::string_view text) : text_(text) {}
+
+  bool at_end() const { return at_ >= text_.size(); }
+  std::int64_t line() const { return line_; }
+  /// Returns the rest of this line, for messages.
+  std::string_view rest_of_line() const;
+
+  void skip_space();   ///< skips blanks and line ends
+  void skip_blanks();  ///< skips blanks within the line
+  void skip_line();
+  /// Skips to after the next ';' outside quotes. Returns false at the end of the file.
+  bool skip_statement();
+
+  /// Reads a name of letters, digits and _ that does not begin with a digit. Returns an empty text
+  /// when there is no name.
+  std::string_view word();
+  /// Returns what word() would return, without consuming it.
+  std::string_view peek_word();
+  /// Reads a character after blanks. Returns false for another one.
+  bool symbol(char wanted);
+  std::optional<std::uint64_t> natural();
+  std::optional<double> number();
+  /// Reads a text in quotes, which may span lines. Returns nullopt when the next character is not a
+  /// quote, or the text does not end.
+  std::optional<std::string> quoted();
+
+ private:
+  char here() const { return at_ < text_.size() ? text_[at_] : '\0'; }
+  void step();
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::int64_t line_ = 1;
+};
+
+void DbcScanner::step() {
+  if (here() == '\n') ++line_;
+  ++at_;
+}
+
+std::string_view DbcScanner::rest_of_line() const {
+  const std::size_t end = text_.find_first_of("\r\n", at_);
+  return text_.substr(at_, end == std::string_view::npos ? end : end - at_);
+}
+
+void DbcScanner::skip_space() {
+  while (!at_end() && (here() == ' ' || here() == '\t' || here() == '\r' || here() == '\n')) step();
+}
+
+void DbcScanner::skip_blanks() {
+  while (!at_end() && (here() == ' ' || here() == '\t' || here() == '\r')) step();
+}
+
+void DbcScanner::skip_line() {
+  while (!at_end() && here() != '\n') step();
+  if (!at_end()) step();
+}
+
+bool DbcScanner::skip_statement() {
+  while (!at_end()) {
+    if (here() == '"') {
+      if (!quoted()) return false;
+      continue;
+    }
+    const bool last = here() == ';';
+    step();
+    if (last) return true;
+  }
+  return false;
+}
+
+std::string_view DbcScanner::peek_word() {
+  skip_blanks();
+  if (!is_letter(here())) return {};
+  std::size_t end = at_;
+  while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
+  return text_.substr(at_, end - at_);
+}
+
+std::string_view DbcScanner::word() {
+  const std::string_view found = peek_word();
+  at_ += found.size();
+  return found;
+}
+
+bool DbcScanner::symbol(char wanted) {
+  skip_blanks();
+  if (here() != wanted) return false;
+  step();
+  return true;
+}
+
+std::optional<std::uint64_t> DbcScanner::natural() {
+  skip_blanks();
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+  if (error != std::errc{}) return std::nullopt;
+  at_ = static_cast<std::size_t>(end - text_.data());
+  return value;
+}
+
+std::optional<double> DbcScanner::number() {
+  skip_blanks();
+  std::size_t end = at_;
+  while (end < text_.size() && (is_digit(text_[end]) || std::string_view("+-.eE").find(
+                                                            text_[end]) != std::string_view::npos))
+    ++end;
+  const std::optional<double> value = parse_number(text_.substr(at_, end - at_));
+  if (value) at_ = end;
+  return value;
+}
+
+std::optional<std::string> DbcScanner::quoted() {
+  skip_blanks();
+  if (here() != '"') return std::nullopt;
+  std::string out;
+  for (step(); !at_end(); step()) {
+    if (here() == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
+      step();
+      out += '"';
+    } else if (here() == '"') {
+      step();
+      return out;
+    } else {
+      out += here();
+    }
+  }
+  return std::nullopt;
+}
+
 constexpr std::uint32_t kExtendedFlag = 0x80000000u;
 constexpr std::uint64_t kIndependent = 0xC0000000u;  ///< VECTOR__INDEPENDENT_SIG_MSG
 
-/// Statements that end with a semicolon and say nothing that is needed here.
+/// Statements that end with a semicolon and are not needed.
 constexpr std::array kSkipped = {
     "CM_",        "BA_DEF_",       "BA_DEF_DEF_",  "BA_DEF_REL_",    "BA_DEF_DEF_REL_",
     "BA_REL_",    "BA_SGTYPE_",    "VAL_",         "VAL_TABLE_",     "BO_TX_BU_",
@@ -25,6 +171,7 @@ constexpr std::array kSkipped = {
     "SIG_GROUP_", "SIG_TYPE_REF_", "SG_MUL_VAL_",  "BA_DEF_SGTYPE_", "CAT_DEF_",
     "CAT_",       "FILTER",        "BU_EV_REL_",   "BU_SG_REL_",     "BU_BO_REL_"};
 
+/// Parses a DBC file statement by statement.
 class Parser {
  public:
   Parser(const std::string& path, std::string_view text, std::vector<Problem>& problems)
@@ -85,7 +232,7 @@ class Parser {
     }
   }
 
-  /// The list of keywords: one a line, up to the first line that is more than a word.
+  /// Skips the list of keywords: one on each line, up to the first line with more than one word.
   void new_symbols() {
     if (!scan_.symbol(':')) return fail("NS_ is followed by a colon");
     scan_.skip_line();
@@ -109,7 +256,7 @@ class Parser {
     DbcMessage m;
     m.line = scan_.line();
     const auto id = scan_.natural();
-    dropped_ = true;  // signals of a message that cannot be read are read over
+    dropped_ = true;  // skip the signals of a message that cannot be read
     if (!id) return fail("BO_ is followed by an id");
     m.name = scan_.word();
     if (m.name.empty() || !scan_.symbol(':'))
@@ -121,9 +268,9 @@ class Parser {
     m.extended = (*id & kExtendedFlag) != 0;
     m.id = static_cast<std::uint32_t>(*id) & ~kExtendedFlag;
     if (*id > 0xFFFFFFFFu || m.id > (m.extended ? 0x1FFFFFFFu : 0x7FFu)) {
-      problems_.add(m.line,
-                    fmt::format("id {} of {} is no {}-bit id{}", *id, m.name, m.extended ? 29 : 11,
-                                m.extended ? "" : "; a 29-bit one has bit 31 set"));
+      problems_.add(
+          m.line, fmt::format("id {} of {} is not a {}-bit id{}", *id, m.name, m.extended ? 29 : 11,
+                              m.extended ? "" : "; a 29-bit one has bit 31 set"));
       return;
     }
     m.length = *length > 64 ? 65 : static_cast<int>(*length);
@@ -154,7 +301,7 @@ class Parser {
   static bool multiplexing(std::string_view word, DbcSignal& s) {
     if (word.empty()) return true;
     if (word == "M") return s.is_multiplexor = true;
-    if (word.ends_with('M')) {  // multiplexed itself, and a multiplexor of others
+    if (word.ends_with('M')) {  // multiplexed, and a multiplexor of others
       s.is_multiplexor = true;
       word.remove_suffix(1);
     }
@@ -195,7 +342,7 @@ class Parser {
     return true;
   }
 
-  /// BA_ "GenMsgCycleTime" BO_ id value; other attributes are read over.
+  /// Reads BA_ "GenMsgCycleTime" BO_ id value and skips other attributes.
   void attribute() {
     const std::int64_t line = scan_.line();
     const auto name = scan_.quoted();
@@ -289,7 +436,7 @@ std::optional<Dbc> parse_dbc(const std::string& path, const std::string& text,
   std::string_view content = text;
   if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
   if (content.find('\0') != std::string_view::npos) {
-    problems.push_back({path, "is no text: it has bytes of value 0"});
+    problems.push_back({path, "is not a text file: it has bytes of value 0"});
     return std::nullopt;
   }
   return Parser(path, content, problems).run();

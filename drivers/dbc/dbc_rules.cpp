@@ -13,10 +13,10 @@
 namespace framewatch::drivers {
 namespace {
 
-/// The first signal that has each bit of a frame, of those that were entered.
+/// Finds for each bit of a frame the first signal that uses it.
 class BitOwners {
  public:
-  static constexpr std::size_t kNobody = SIZE_MAX;
+  static constexpr std::size_t kUnused = SIZE_MAX;
 
   void enter(const CanField& field, std::size_t signal) {
     for_each_bit(field, [&](int bit) {
@@ -24,20 +24,20 @@ class BitOwners {
       owner = std::min(owner, signal);
     });
   }
-  /// Of the bits that a field has.
+  /// Returns the first signal that uses a bit of the field, or kUnused.
   std::size_t first_of(const CanField& field) const {
-    std::size_t first = kNobody;
+    std::size_t first = kUnused;
     for_each_bit(field,
                  [&](int bit) { first = std::min(first, owners_[static_cast<std::size_t>(bit)]); });
     return first;
   }
 
  private:
-  std::vector<std::size_t> owners_ = std::vector<std::size_t>(512, kNobody);
+  std::vector<std::size_t> owners_ = std::vector<std::size_t>(512, kUnused);
 };
 
-/// Signals that may be there at the same time must not share a bit. Each is told with the first
-/// before it that it shares any with.
+/// Reports signals that share a bit and can be present at the same time, each with the first signal
+/// before it that shares a bit.
 void check_overlaps(const DbcMessage& message, std::vector<DbcRule>& rules) {
   std::map<std::int64_t, std::vector<std::size_t>> multiplexed;
   BitOwners anyones, always;
@@ -50,7 +50,7 @@ void check_overlaps(const DbcMessage& message, std::vector<DbcRule>& rules) {
     else
       always.enter(s.field, i);
   }
-  std::vector<std::size_t> shared_with(message.signals.size(), BitOwners::kNobody);
+  std::vector<std::size_t> shared_with(message.signals.size(), BitOwners::kUnused);
   for (std::size_t i = 0; i < message.signals.size(); ++i)
     if (const DbcSignal& s = message.signals[i]; fits(s.field, message.length))
       shared_with[i] = (s.multiplexed_by ? always : anyones).first_of(s.field);
@@ -80,7 +80,7 @@ void check_multiplexing(const DbcMessage& message, std::vector<DbcRule>& rules) 
     multiplexor = &s;
   }
   if (multiplexor != nullptr && multiplexor->field.value != CanValue::integer)
-    rules.push_back({multiplexor->line, "a multiplexor is a whole number"});
+    rules.push_back({multiplexor->line, "a multiplexor must be a whole number"});
   for (const DbcSignal& s : message.signals) {
     if (!s.multiplexed_by) continue;
     if (multiplexor == nullptr)

@@ -19,9 +19,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kWrite{250}, kSync{1000};
-constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // do not wait for kWrite with more
+constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // more is written without waiting for kWrite
 
-/// Onto the disk, and the name of `fresh` unless that is empty. Empty, or why not.
+/// Forces a file onto the disk, and the name `fresh` unless it is empty. Returns what went wrong.
 std::string force(int file, const std::string& fresh) {
   const std::string why = ::fsync(file) == 0 ? "" : std::strerror(errno);
   if (!fresh.empty()) sync_folder_of(fresh);
@@ -64,13 +64,13 @@ void DurableFile::start() {
   begin_thread();
 }
 
-/// Tried again with what is appended while the system has no thread left.
+/// append() calls this again while the system has no thread to give.
 void DurableFile::begin_thread() {
   if (thread_.joinable()) return;
   const std::string thrown = caught([this] { thread_ = std::thread([this] { work(); }); });
   if (thrown.empty()) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  trouble_ = "no thread to write it: " + thrown;
+  trouble_ = "cannot start a thread to write it: " + thrown;
 }
 
 bool DurableFile::in_use(const std::string& path) {
@@ -125,7 +125,7 @@ bool DurableFile::write_some() {
     const std::lock_guard<std::mutex> lock(mutex_);
     trouble_ = why;
     if (n <= 0) return false;
-    // A write that stopped in the middle goes on where it stopped: no event is torn.
+    // A partial write continues where it stopped, so that no event is torn.
     written_ += static_cast<std::size_t>(n);
     waiting_ = writing_.size() - written_;
     counters_.bytes += n;
@@ -136,7 +136,7 @@ bool DurableFile::write_some() {
 void DurableFile::work() {
   Clock::time_point next_sync = Clock::now() + kSync;
   bool dirty = false, fresh = true;
-  std::future<std::string> forcing;  // in a thread of its own: what comes meanwhile is written
+  std::future<std::string> forcing;  // runs in another thread, so that writing goes on
   const auto forced = [&] {
     const std::string why = forcing.get();
     if (why.empty()) return;
@@ -168,7 +168,7 @@ void DurableFile::work() {
     next_sync = Clock::now() + kSync;
     if (!dirty || file_ < 0) continue;
     dirty = false;
-    // Deferred, hence here, when the system has no thread left.
+    // Deferred, so run in this thread, when the system has no thread to give.
     forcing = std::async(std::launch::async | std::launch::deferred, &force, file_,
                          std::exchange(fresh, false) ? path_ : std::string());
     if (last) forced();
@@ -186,14 +186,14 @@ void DurableFile::finish(std::chrono::milliseconds patience) {
   if (thread_.joinable())
     thread_.join();
   else
-    work();  // here, for want of a thread
+    work();  // no thread could be started: write here
 }
 
 bool DurableFile::close(std::string& error, std::chrono::milliseconds patience) {
   if (!is_open()) return false;
   finish(patience);
   error = trouble_;
-  if (error.empty() && waiting_ > 0) error = "not everything was written";
+  if (error.empty() && waiting_ > 0) error = "not all bytes were written";
   if (file_ < 0) return error.empty();
   if (error.empty() && std::rename((path_ + ".partial").c_str(), path_.c_str()) != 0)
     error = std::strerror(errno);

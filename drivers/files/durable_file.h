@@ -12,10 +12,10 @@
 
 namespace framewatch::drivers {
 
-/// Appends to a file from a thread of its own, so that a slow disk delays nobody. The file is
-/// PATH.partial until close(); it is given to the operating system four times a second and forced
-/// onto the disk (fsync) every second, and nothing ever removes it. While the disk refuses, what
-/// comes waits, and is written when it takes again; what does not fit into the queue is dropped and
+/// Appends to a file from a separate thread, so that a slow disk delays no caller. The file is
+/// PATH.partial until close() and is never removed. The thread writes four times a second and
+/// forces the bytes onto the disk (fsync) once a second. While the disk refuses, bytes wait in a
+/// queue and are written later; calls of append() that do not fit into the queue are dropped and
 /// counted.
 class DurableFile {
  public:
@@ -24,35 +24,35 @@ class DurableFile {
   struct Counters {
     std::int64_t appended = 0, dropped = 0;  ///< calls of append()
     std::int64_t bytes = 0;                  ///< given to the operating system
-    std::size_t queued = 0;                  ///< bytes that wait
-    std::size_t queue_high_water = 0;        ///< the most there ever were
+    std::size_t queued = 0;                  ///< bytes waiting
+    std::size_t queue_high_water = 0;        ///< largest value of `queued` so far
   };
 
   explicit DurableFile(std::size_t queue_bytes = kQueueBytes) : queue_bytes_(queue_bytes) {}
-  /// As close(), but the file keeps its partial name.
+  /// Writes what the disk accepts at once; the file keeps its partial name.
   ~DurableFile();
   DurableFile(const DurableFile&) = delete;
   DurableFile& operator=(const DurableFile&) = delete;
 
-  /// False, with the reason, when the file cannot be made or another process appends to it.
+  /// Creates PATH.partial. Returns false and sets `error` when the file exists or cannot be
+  /// created.
   [[nodiscard]] bool open(const std::string& path, std::string& error);
-  /// The same, but the thread makes the file when there is something to write, and tries again four
-  /// times a second while the disk refuses. `path` is asked for each time, in the thread, and
-  /// should name a file that is not there.
+  /// Creates the file when there is something to write, and tries again four times a second while
+  /// the disk refuses. The thread calls `path` before each try; it should name a new file.
   void open_when_needed(std::function<std::string()> path);
   bool is_open() const { return wanted_; }
-  /// Never waits for the disk. False: dropped.
+  /// Queues bytes; never waits for the disk. Returns false when the bytes were dropped.
   bool append(std::string_view bytes);
   Counters counters() const;
-  /// Why the disk does not take what waits; empty: it does.
+  /// Returns why the queue cannot be written now; empty when it can.
   std::string trouble() const;
-  /// Writes the rest, for `patience` at most while the disk refuses it, and renames. False, with
-  /// the reason, when something is missing: then the file stays PATH.partial. A file that was never
-  /// needed is not made.
+  /// Writes the rest, trying for at most `patience` while the disk refuses, and renames the file.
+  /// Returns false and sets `error` when bytes are missing: the file then stays PATH.partial.
+  /// Creates no file when nothing was appended.
   [[nodiscard]] bool close(std::string& error,
                            std::chrono::milliseconds patience = std::chrono::seconds(5));
 
-  /// Whether some process has PATH.partial open().
+  /// Returns true if a process is writing PATH.partial.
   static bool in_use(const std::string& path);
 
  private:
@@ -69,10 +69,10 @@ class DurableFile {
   int file_ = -1;
   std::thread thread_;
   bool wanted_ = false;  ///< between open() and close()
-  std::string writing_;  ///< of the thread: what it is at
+  std::string writing_;  ///< bytes that the thread is writing
   std::size_t written_ = 0;
 
-  mutable std::mutex mutex_;  ///< guards what is below
+  mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable wake_;
   std::string filling_;
   std::size_t waiting_ = 0;  ///< bytes of writing_ that are not yet written

@@ -6,19 +6,25 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/files/problem.h"
-
 namespace framewatch::drivers {
 
-/// Collects the problems of one file, the first kMax of them.
+/// One thing that is wrong with a file.
+struct Problem {
+  std::string where;    ///< "rec.csv:12", or "rec.csv" for the whole file
+  std::string message;  ///< the rule that it breaks
+};
+
+/// Collects the problems of one file, at most kMax of them.
 class FileProblems {
  public:
   static constexpr int kMax = 20;
 
+  /// Problems are appended to `problems`, which must outlive this object.
   FileProblems(std::string path, std::vector<Problem>& problems)
       : path_(std::move(path)), problems_(&problems) {}
 
-  /// Line 0 is the file as a whole.
+  /// Adds a problem at a line, counted from 1; line 0 stands for the whole file. Problems beyond
+  /// kMax are dropped, after a note that says so.
   void add(std::int64_t line, const std::string& message);
   bool any() const { return count_ > 0; }
   bool full() const { return count_ >= kMax; }
@@ -30,7 +36,8 @@ class FileProblems {
   int count_ = 0;
 };
 
-/// A piece of a file as a message can show it: quoted, short, printable.
+/// Returns `text` as a message can show it: in quotes, at most 40 characters, with "?" for
+/// unprintable ones.
 std::string show_text(std::string_view text);
 
 }  // namespace framewatch::drivers

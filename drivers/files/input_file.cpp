@@ -6,13 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
 #include <fmt/core.h>
-
-#include "drivers/files/bytes_read.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -28,8 +27,26 @@ std::string why_not_regular(mode_t mode) {
                                                       : "something else";
   return fmt::format("is {}, not a file", kind);
 }
+constexpr std::int64_t kBufferBytes = 1 << 20;
+std::atomic<std::int64_t> bytes_so_far{0};
+
+// A raw log of `run` has at most 4,000 MB (history.rotate_mb). A log of dead channels packs to
+// 1/3,400 of its size (measured), a file built to exhaust memory to 1/32,000.
+constexpr std::int64_t kMaxBytes = std::int64_t{4} << 30;
+constexpr std::int64_t kMaxTimes = 4000;
+constexpr std::int64_t kAlwaysBytes = std::int64_t{64} << 20;
+
+std::atomic<std::int64_t> asked_bytes{0};  // 0: no limit was set
 
 }  // namespace
+
+std::int64_t bytes_read() {
+  return bytes_so_far.load(std::memory_order_relaxed);
+}
+
+void count_bytes_read(std::int64_t more) {
+  bytes_so_far.fetch_add(more, std::memory_order_relaxed);
+}
 
 std::string why_no_file(const std::string& path) {
   struct stat status {};
@@ -46,7 +63,7 @@ bool InputFile::open(const std::string& path) {
   close();
   error_ = why_no_file(path);
   if (!error_.empty()) return false;
-  // It may be something else by now.
+  // The name may have changed its meaning since.
   const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   struct stat status {};
   if (file < 0 || ::fstat(file, &status) != 0)
@@ -109,12 +126,39 @@ std::optional<std::string> read_whole_file(const std::string& path, std::int64_t
   return std::nullopt;
 }
 
+std::int64_t unpack_limit(std::int64_t packed_bytes) {
+  if (const std::int64_t asked = asked_bytes; asked > 0) return asked;
+  return std::min(kMaxBytes, std::max(kAlwaysBytes, kMaxTimes * std::min(packed_bytes, kMaxBytes)));
+}
+
+void set_unpack_limit(std::int64_t bytes) {
+  asked_bytes = bytes;
+}
+
+std::string over_unpack_limit(std::int64_t packed_bytes) {
+  return fmt::format("unpacks to more than {}, from {}; --max-size allows more",
+                     size_text(unpack_limit(packed_bytes)), size_text(packed_bytes));
+}
+
 std::string size_text(std::int64_t bytes) {
   constexpr std::array kUnits{"bytes", "KiB", "MiB", "GiB", "TiB"};
   std::size_t unit = 0;
   auto size = static_cast<double>(bytes);
   for (; size >= 1024 && unit + 1 < kUnits.size(); ++unit) size /= 1024;
   return fmt::format("{:.4g} {}", size, kUnits[unit]);
+}
+
+const std::uint8_t* FileWindow::at(std::int64_t offset, std::int64_t bytes, std::string& error) {
+  if (holds(offset, bytes)) return buffer_.data() + (offset - begin_);
+  const std::int64_t wanted = std::min(std::max(bytes, kBufferBytes), file_.size() - offset);
+  if (std::ssize(buffer_) < wanted) buffer_.resize(static_cast<std::size_t>(wanted));
+  begin_ = offset;
+  held_ = std::max<std::int64_t>(0, file_.read(buffer_.data(), wanted, offset));
+  bytes_read_ += held_;
+  if (held_ == wanted) return buffer_.data();
+  error = file_.error().empty() ? "became shorter while it was read" : file_.error();
+  held_ = 0;
+  return nullptr;
 }
 
 }  // namespace framewatch::drivers

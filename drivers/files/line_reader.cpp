@@ -56,7 +56,7 @@ bool LineReader::next(std::string_view& line) {
   line = std::string_view(buffer_).substr(begin_, end - begin_);
   begin_ = end == std::string::npos ? buffer_.size() : end + 1;
   if (number_ == 1 && (line.substr(0, 2) == "\xFF\xFE" || line.substr(0, 2) == "\xFE\xFF"))
-    return fail("is UTF-16, which spreadsheets call Unicode text: save it as CSV UTF-8");
+    return fail("is UTF-16, which spreadsheets call Unicode text: save it as CSV UTF-8 instead");
   if (number_ == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   const auto control = std::find_if(line.begin(), line.end(), is_control);

@@ -5,26 +5,28 @@
 #include <string_view>
 
 #include "drivers/files/file_problems.h"
-#include "drivers/files/gzip_input.h"
+#include "drivers/files/packed_file.h"
 
 namespace framewatch::drivers {
 
-/// Reads a text file, plain or gzip, line by line in bounded memory. A byte-order mark and carriage
-/// returns at line ends are taken off.
+/// Reads a text file, plain or gzip, line by line in bounded memory. Drops a byte-order mark, and
+/// carriage returns at line ends.
 class LineReader {
  public:
   static constexpr std::size_t kMaxLineBytes = 1 << 20;
 
+  /// Opens problems.path(). A file that cannot be opened becomes a problem. `problems` must outlive
+  /// this object.
   explicit LineReader(FileProblems& problems);
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
-  /// False at the end, and when the file cannot be read further, is not text or unpacks to more
-  /// than unpack_limit(): that is a problem. The line is valid until the next call.
+  /// Reads the next line into `line`, valid until the next call. Returns false at the end, and with
+  /// a problem when the file cannot be read, is not text, or unpacks to more than unpack_limit().
   [[nodiscard]] bool next(std::string_view& line);
-  /// Of the line last read, from 1.
+  /// Returns the number of the line last read, counted from 1.
   std::int64_t number() const { return number_; }
-  /// The line last read has its line end: nothing of it was cut off.
+  /// Returns true if the line last read has a line end, so that it cannot be cut off.
   bool line_ended() const { return line_ended_; }
 
  private:

@@ -8,18 +8,22 @@
 
 namespace framewatch::drivers {
 
-/// A decimal number, the whole of `text`, whatever the locale; NaN and inf are read as such.
+/// Parses all of `text` as a decimal number, in any locale; "nan" and "inf" count as numbers.
+/// Returns nullopt for any other text.
 std::optional<double> parse_number(std::string_view text);
+/// Parses all of `text` as a whole number. Returns nullopt for any other text.
 std::optional<std::int64_t> parse_integer(std::string_view text);
-/// An acceleration: a number, or NaN for "nan" and an empty field; empty for inf and anything else.
+/// Parses a sample: a number, or NaN for "nan" and an empty field. Returns nullopt for infinities
+/// and any other text.
 std::optional<double> parse_sample(std::string_view text);
-/// The shortest text that reads back as the same double.
+/// Returns the shortest text that parses back to the same double.
 std::string format_number(double value);
 
+/// Returns `text` without blanks and tabs at its ends.
 std::string_view trimmed(std::string_view text);
-/// Fields between commas, trimmed.
+/// Splits a line at commas into trimmed `fields`; a line without commas is one field.
 void split_commas(std::string_view line, std::vector<std::string_view>& fields);
-/// Fields between blanks, tabs, commas or semicolons, of which several count as one.
+/// Splits a line at runs of blanks, tabs, commas and semicolons into `fields`.
 void split_blanks(std::string_view line, std::vector<std::string_view>& fields);
 
 }  // namespace framewatch::drivers

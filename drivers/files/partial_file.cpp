@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <climits>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -19,7 +21,7 @@ namespace framewatch::drivers {
 namespace {
 
 constexpr int kTries = 3;
-constexpr mode_t kMode = 0666;  // less what umask takes
+constexpr mode_t kMode = 0666;  // minus the bits of umask
 
 /// The names of the files that are open, where a signal handler can read them.
 struct Mark {
@@ -28,7 +30,8 @@ struct Mark {
 };
 std::array<Mark, 64> marks;
 
-/// -1: there is no place, and a signal leaves the file behind.
+/// Returns the place of the new mark, or -1 when there is no room: a signal then leaves the file
+/// behind.
 int marked(const std::string& path) {
   if (path.size() >= PATH_MAX) return -1;
   for (std::size_t i = 0; i < marks.size(); ++i) {
@@ -47,7 +50,7 @@ void unmark(int at) {
   mark.taken = false;
 }
 
-/// No signal comes to this thread between a file's making and its mark.
+/// Blocks signals in this thread, so that none comes between the creation of a file and its mark.
 class WithoutSignals {
  public:
   WithoutSignals() {
@@ -63,18 +66,32 @@ class WithoutSignals {
   sigset_t before_{};
 };
 
-/// Why what is there under the name of a partial file cannot be removed; empty: it is gone.
+/// Removes an old partial file. Returns an empty string, or why it cannot be removed.
 std::string clear_away(const std::string& partial) {
   struct stat there {};
   if (::lstat(partial.c_str(), &there) != 0) return errno == ENOENT ? "" : std::strerror(errno);
-  if (S_ISLNK(there.st_mode)) return "is a symbolic link, not a file that a run left behind";
-  if (!S_ISREG(there.st_mode)) return "is there and no plain file";
-  if (there.st_uid != ::geteuid()) return "is there and belongs to another user";
+  if (S_ISLNK(there.st_mode))
+    return "is a symbolic link, not a file that an earlier run left behind";
+  if (!S_ISREG(there.st_mode)) return "exists and is not a regular file";
+  if (there.st_uid != ::geteuid()) return "exists and belongs to another user";
   const int file = ::open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   const bool writing = file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   if (file >= 0) ::close(file);
   if (writing) return "is being written by another process";
   return ::unlink(partial.c_str()) == 0 || errno == ENOENT ? "" : std::strerror(errno);
+}
+
+constexpr int kMaxCutOff = 1000;
+
+/// Renames a partial file to the first free name and returns that; empty when the system refuses.
+std::string rename_cut_off(const std::string& partial, const std::string& path) {
+  for (int n = 1; n <= kMaxCutOff; ++n) {
+    const std::string kept = path + ".cut-off-" + std::to_string(n);
+    if (::renameat2(AT_FDCWD, partial.c_str(), AT_FDCWD, kept.c_str(), RENAME_NOREPLACE) == 0)
+      return kept;
+    if (errno != EEXIST) return {};
+  }
+  return {};
 }
 
 }  // namespace
@@ -98,11 +115,11 @@ bool PartialFile::make(const std::string& partial) {
       continue;
     }
     ::flock(file_, LOCK_EX | LOCK_NB);
-    if (still_ours()) return true;  // nobody took it for one that was left behind
+    if (still_ours()) return true;  // no other process removed it as one left behind
     ::close(file_);
     file_ = -1;
   }
-  return fail(partial + " is made by somebody else again and again");
+  return fail(partial + " is repeatedly created by another process");
 }
 
 bool PartialFile::still_ours() const {
@@ -127,7 +144,7 @@ bool PartialFile::open(const std::string& path) {
   if (is_standard_output_) return open_standard_output();
   struct stat there {};
   if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
-    return fail(S_ISDIR(there.st_mode) ? "is a directory" : "is there and no plain file");
+    return fail(S_ISDIR(there.st_mode) ? "is a directory" : "exists and is not a regular file");
   const WithoutSignals undisturbed;
   if (!make(path + ".partial")) return false;
   mark_ = marked(path + ".partial");
@@ -151,7 +168,7 @@ bool PartialFile::commit() {
     return error_.empty();
   }
   const std::string partial = path_ + ".partial";
-  // A file system that cannot force anything onto a disk says EINVAL.
+  // EINVAL: this file system has no fsync.
   if (::fsync(file_) != 0 && errno != EINVAL) fail(std::strerror(errno));
   if (error_.empty() && !still_ours()) {
     fail(partial + " was replaced while it was written");
@@ -206,9 +223,23 @@ void remove_partial_files() {
   const auto say = [](const char* text) { return ::write(STDERR_FILENO, text, std::strlen(text)); };
   for (Mark& mark : marks) {
     if (!mark.complete || ::unlink(mark.path.data()) != 0) continue;
-    if (say("framewatch: ends; ") >= 0 && say(mark.path.data()) >= 0) (void)say(" is removed\n");
+    if (say("framewatch: stopping; removed ") >= 0 && say(mark.path.data()) >= 0) (void)say("\n");
   }
   errno = before;
+}
+
+std::string keep_cut_off(const std::string& path) {
+  const std::string partial = path + ".partial";
+  const int file = ::open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return {};
+  struct stat there {};
+  const bool ours = ::fstat(file, &there) == 0 && S_ISREG(there.st_mode) &&
+                    there.st_uid == ::geteuid() && there.st_size > 0 &&
+                    ::flock(file, LOCK_EX | LOCK_NB) == 0;
+  std::string kept;
+  if (ours) kept = rename_cut_off(partial, path);
+  ::close(file);
+  return kept;
 }
 
 }  // namespace framewatch::drivers

@@ -7,28 +7,31 @@
 
 namespace framewatch::drivers {
 
-/// A file while it is written: PATH.partial, which commit() renames to PATH when it is whole. The
-/// partial file is made anew and never through a symbolic link. One that a run before left behind,
-/// a plain file of the same user that no process writes, is removed first; anything else of that
-/// name is refused, and so is a PATH that is there and no plain file. The path "-" is standard
-/// output, once in a process: what is written goes there at once.
+/// Writes a file as PATH.partial, which commit() renames to PATH. Never follows a symbolic link.
+/// open() first removes a PATH.partial that an earlier run left behind: a regular file of the same
+/// user that no process is writing. It refuses anything else of that name, and a PATH that exists
+/// and is not a regular file. The path "-" is standard output, once per process; bytes written go
+/// there at once.
 class PartialFile {
  public:
   PartialFile() = default;
-  /// As discard().
+  /// Calls discard().
   ~PartialFile();
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
 
+  /// Creates PATH.partial. Returns false and sets error() when the system refuses.
   [[nodiscard]] bool open(const std::string& path);
   bool is_open() const { return file_ >= 0; }
-  /// -1 when it is not open.
+  /// Returns -1 when no file is open.
   int descriptor() const { return file_; }
-  /// A stream of its own on the same file, to be closed before commit(); null: see error().
+  /// Returns a new stream on the same file, to be closed before commit(). Returns null and sets
+  /// error() when the system refuses.
   [[nodiscard]] std::FILE* stream();
-  /// Forces what was written onto the disk and renames. False: nothing of it stays.
+  /// Forces the bytes onto the disk and renames the file. Returns false and sets error() when that
+  /// fails; the partial file is then removed.
   [[nodiscard]] bool commit();
-  /// Removes the partial file. PATH stays as it was.
+  /// Removes the partial file. PATH does not change.
   void discard();
   const std::string& error() const { return error_; }
 
@@ -42,18 +45,23 @@ class PartialFile {
   std::string error_;
   int file_ = -1;
   bool is_standard_output_ = false;
-  int mark_ = -1;  ///< its place among those that remove_partial_files() removes
+  int mark_ = -1;  ///< its place in the list of remove_partial_files(); -1: not in it
 };
 
-/// Opens a file of ours under a name that can be guessed, such as a lock: made when it is missing,
-/// never through a symbolic link, never a pipe or a device. -1 with errno when that fails.
+/// Renames PATH.partial, which an interrupted run left behind, to PATH.cut-off-N, so that the next
+/// PartialFile of PATH does not remove it. Returns the new name. Returns an empty string when there
+/// is no such file: a regular file of the same user, not empty, that no process is writing.
+std::string keep_cut_off(const std::string& path);
+
+/// Opens a file whose name can be guessed, such as a lock, with the flags of open(2). Refuses
+/// symbolic links, pipes and devices. Returns its descriptor, or -1 with errno.
 int open_own_file(const std::string& path, int flags, mode_t mode = 0644);
 
-/// Forces the folder of `path` onto the disk, so that a name survives a power cut as the bytes do.
+/// Forces the folder of `path` onto the disk, so that a new name survives a power cut.
 void sync_folder_of(const std::string& path);
 
-/// Removes the partial files of this process that are not committed, and says so on stderr. For
-/// signal handlers, before the process ends.
+/// Removes the uncommitted partial files of this process and reports each on stderr. Call it in
+/// signal handlers before the process ends.
 void remove_partial_files();
 
 }  // namespace framewatch::drivers

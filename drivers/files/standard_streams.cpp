@@ -10,31 +10,21 @@
 #include <filesystem>
 #include <vector>
 
+#include "drivers/files/descriptor.h"
 #include "drivers/files/input_file.h"
-#include "drivers/files/unpack_limit.h"
 
 namespace framewatch::drivers {
 namespace {
 
 constexpr std::size_t kAtOnce = 1 << 16;
-constexpr std::int64_t kAnySize = std::int64_t{1} << 40;  ///< its own size is not known beforehand
+constexpr std::int64_t kAnySize = std::int64_t{1} << 40;  ///< a pipe has no size: allow the most
 
-/// Whether it is a file that has not been read from: others may have taken its beginning.
+/// Returns true if standard input is a file at its start. Another process may have read its
+/// beginning.
 bool is_whole_file() {
   struct stat status {};
   return ::fstat(STDIN_FILENO, &status) == 0 && S_ISREG(status.st_mode) &&
          ::lseek(STDIN_FILENO, 0, SEEK_CUR) == 0;
-}
-
-bool write_all(int to, const char* bytes, std::size_t size) {
-  while (size > 0) {
-    const ssize_t wrote = ::write(to, bytes, size);
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote < 0) return false;
-    bytes += wrote;
-    size -= static_cast<std::size_t>(wrote);
-  }
-  return true;
 }
 
 std::string take_everything(int to) {
@@ -48,7 +38,7 @@ std::string take_everything(int to) {
     sum += got;
     if (sum > unpack_limit(kAnySize))
       return "is longer than " + size_text(unpack_limit(kAnySize)) + "; --max-size allows more";
-    if (!write_all(to, bytes.data(), static_cast<std::size_t>(got)))
+    if (!write_fully(to, bytes.data(), static_cast<std::size_t>(got)))
       return std::string("cannot be kept in a temporary file: ") + std::strerror(errno);
   }
 }

@@ -4,19 +4,18 @@
 
 namespace framewatch::drivers {
 
-/// What an output is called that goes to standard output: "-".
+/// The name of an output that goes to standard output.
 inline constexpr const char* kStandardOutput = "-";
-/// What standard input is called once keep_standard_input() made a file of it.
+/// The path of standard input after keep_standard_input().
 inline constexpr const char* kStandardInput = "/dev/stdin";
 
-/// Makes standard input a regular file under the name kStandardInput: what a pipe or a terminal
-/// gives is taken to its end into a file without a name, which goes with the process. Every reader
-/// then reads it as it reads files, forwards, backwards and more than once. Empty, or why not: also
-/// when more comes than unpack_limit() allows of a file of that size.
+/// Makes standard input a regular file with the path kStandardInput, so that readers can seek in it
+/// and read it more than once. Copies a pipe or terminal to its end into a temporary file without a
+/// name. Returns an empty string, or what went wrong: also when the input exceeds unpack_limit().
 std::string keep_standard_input();
 
-/// The folder that relative paths in the file `path` start from; empty: the working directory, as
-/// of standard input.
+/// Returns the folder that relative paths in the file `path` start from. Returns an empty string
+/// for the working directory, which also applies to standard input.
 std::string folder_of_paths_in(const std::string& path);
 
 }  // namespace framewatch::drivers

@@ -9,8 +9,8 @@ struct gzFile_s;
 
 namespace framewatch::drivers {
 
-/// Writes a text file, gzip when its name ends in .gz, as a PartialFile that close() renames:
-/// nothing half-written under its name.
+/// Writes a text file, compressed when its name ends in .gz. The file is a PartialFile until
+/// close(), so that its name never shows half-written contents.
 class TextOutput {
  public:
   TextOutput() = default;
@@ -19,8 +19,11 @@ class TextOutput {
   TextOutput(const TextOutput&) = delete;
   TextOutput& operator=(const TextOutput&) = delete;
 
+  /// Creates the partial file. Returns false and sets error() when the system refuses; so do
+  /// write() and close().
   [[nodiscard]] bool open(const std::string& path);
   [[nodiscard]] bool write(std::string_view text);
+  /// Renames the partial file to its final name.
   [[nodiscard]] bool close();
   const std::string& error() const { return error_; }
 
@@ -32,7 +35,8 @@ class TextOutput {
   std::string error_;
 };
 
-/// A whole text as a file. Empty, or the path and why not; then what was there is still there.
+/// Writes `text` as the file `path`. Returns an empty string, or the path and what went wrong; an
+/// older file of that name then stays.
 std::string write_text_file(const std::string& path, std::string_view text);
 
 }  // namespace framewatch::drivers

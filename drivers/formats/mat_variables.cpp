@@ -1,23 +1,206 @@
 #include "drivers/formats/mat_variables.h"
 
+#include <hdf5.h>
 #include <matio.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
+#include <functional>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "drivers/files/input_file.h"
-#include "drivers/files/unpack_limit.h"
-#include "drivers/formats/hdf5_guard.h"
-#include "drivers/formats/mat_layout.h"
-#include "drivers/formats/mat_signature.h"
 #include "drivers/records/record_builder.h"
 
 namespace framewatch::drivers {
 namespace {
+
+constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
+constexpr std::uint32_t kObjectClass = 3, kSparseClass = 5, kFunctionClass = 16, kOpaqueClass = 17;
+constexpr int kDeepestArray = 16;
+constexpr std::int64_t kMaxInflated = std::int64_t{1} << 29;
+constexpr std::int64_t kInflateBytes = 1 << 16;
+
+/// Reads bytes of a file, or of an element that was unpacked into memory. Returns false beyond its
+/// end.
+using ReadAt = std::function<bool(void* to, std::int64_t bytes, std::int64_t at)>;
+
+struct MatElement {
+  std::uint32_t type = 0;
+  std::int64_t content = 0, bytes = 0;  ///< offset and size of the content, without the padding
+  std::int64_t next = 0;                ///< offset of the next element
+};
+
+class MatLayout {
+ public:
+  MatLayout(ReadAt read, bool big_endian) : read_(std::move(read)), big_endian_(big_endian) {}
+
+  std::optional<MatElement> element(std::int64_t at, std::int64_t end) const {
+    const auto first = number(at), second = number(at + 4);
+    if (at + 8 > end || !first || !second) return std::nullopt;
+    MatElement out{*first, at + 8, *second, 0};
+    if ((*first >> 16) != 0) out = {*first & 0xffff, at + 4, *first >> 16, at + 8};
+    const bool small = out.next != 0;
+    if (small && out.bytes > 4) return std::nullopt;
+    if (!small) out.next = out.content + (out.type == kCompressed ? out.bytes : padded(out.bytes));
+    if (out.next > end) return std::nullopt;
+    return out;
+  }
+
+  /// Checks the flags, dimensions and parts of a matrix.
+  bool is_sound(const MatElement& matrix, int depth) const {
+    if (matrix.bytes == 0) return true;
+    if (depth > kDeepestArray) return false;
+    const std::int64_t end = matrix.content + matrix.bytes;
+    const auto flags = element(matrix.content, end);
+    const auto kind = flags && flags->bytes == 8 ? number(flags->content) : std::nullopt;
+    if (!kind) return false;
+    const std::uint32_t type = *kind & 0xff;
+    const bool opaque = type == kOpaqueClass || type == kFunctionClass || type == kObjectClass;
+    std::int64_t at = flags->next;
+    for (int i = 0; at < end; ++i) {
+      const auto part = element(at, end);
+      if (!part) return false;
+      if (i == 0 && !opaque && type != kSparseClass && !fits(*part, matrix.bytes)) return false;
+      if (part->type == kMatrix && !is_sound(*part, depth + 1)) return false;
+      at = part->next;
+    }
+    return true;
+  }
+
+ private:
+  static std::int64_t padded(std::int64_t bytes) { return (bytes + 7) / 8 * 8; }
+
+  std::optional<std::uint32_t> number(std::int64_t at) const {
+    std::array<std::uint8_t, 4> bytes{};
+    if (!read_(bytes.data(), 4, at)) return std::nullopt;
+    if (!big_endian_) std::reverse(bytes.begin(), bytes.end());
+    std::uint32_t out = 0;
+    for (const std::uint8_t byte : bytes) out = out << 8 | byte;
+    return out;
+  }
+
+  /// Returns true if an array with these dimensions has no more values than bytes.
+  bool fits(const MatElement& dimensions, std::int64_t bytes) const {
+    std::int64_t count = 1;
+    for (std::int64_t at = 0; at < dimensions.bytes; at += 4) {
+      const auto size = number(dimensions.content + at);
+      if (!size || at > 4 * 32) return false;
+      if (__builtin_mul_overflow(count, std::int64_t{*size}, &count)) return false;
+    }
+    return count <= bytes;
+  }
+
+  ReadAt read_;
+  bool big_endian_;
+};
+
+std::optional<std::string> inflated(InputFile& input, const MatElement& packed) {
+  const std::int64_t most = std::min(kMaxInflated, unpack_limit(input.size()));
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) return std::nullopt;
+  std::string from(static_cast<std::size_t>(kInflateBytes), '\0'), out, to = from;
+  int code = Z_OK;
+  for (std::int64_t done = 0; code == Z_OK && done < packed.bytes && std::ssize(out) <= most;) {
+    const std::int64_t bytes = std::min(kInflateBytes, packed.bytes - done);
+    if (input.read(from.data(), bytes, packed.content + done) != bytes) break;
+    done += bytes;
+    stream.next_in = reinterpret_cast<Bytef*>(from.data());
+    stream.avail_in = static_cast<uInt>(bytes);
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(to.data());
+      stream.avail_out = static_cast<uInt>(kInflateBytes);
+      code = inflate(&stream, Z_NO_FLUSH);
+      out.append(to, 0, to.size() - stream.avail_out);
+    } while (code == Z_OK && stream.avail_out == 0 && std::ssize(out) <= most);
+    if (code == Z_BUF_ERROR) code = Z_OK;
+  }
+  inflateEnd(&stream);
+  if (code != Z_STREAM_END || std::ssize(out) > most) return std::nullopt;
+  return out;
+}
+
+bool is_sound_unpacked(const std::string& bytes, bool big_endian) {
+  const ReadAt read = [&](void* to, std::int64_t count, std::int64_t at) {
+    if (at + count > std::ssize(bytes)) return false;
+    std::memcpy(to, bytes.data() + at, static_cast<std::size_t>(count));
+    return true;
+  };
+  const MatLayout layout(read, big_endian);
+  const auto matrix = layout.element(0, std::ssize(bytes));
+  return matrix && matrix->type == kMatrix && layout.is_sound(*matrix, 1);
+}
+
+/// Returns the number of variables of a MATLAB file of level 5. Returns nullopt when the file is
+/// damaged or cut off: an element is longer than what holds it, or an array has more values than
+/// bytes. Also refuses arrays nested more than 16 deep, and a compressed one that unpacks to more
+/// than unpack_limit() or 512 MiB. Without these checks libmatio allocates what such numbers say,
+/// and silently stops at the first variable that it cannot read.
+std::optional<std::size_t> count_in_level_5(InputFile& input, bool big_endian) {
+  const ReadAt read = [&](void* to, std::int64_t bytes, std::int64_t at) {
+    return input.read(to, bytes, at) == bytes;
+  };
+  const MatLayout layout(read, big_endian);
+  std::size_t count = 0;
+  for (auto at = static_cast<std::int64_t>(kMatHeaderBytes); at < input.size(); ++count) {
+    const auto top = layout.element(at, input.size());
+    if (!top) return std::nullopt;
+    if (top->type == kCompressed) {
+      const auto bytes = inflated(input, *top);
+      if (!bytes || !is_sound_unpacked(*bytes, big_endian)) return std::nullopt;
+    } else if (top->type != kMatrix || !layout.is_sound(*top, 1)) {
+      return std::nullopt;
+    }
+    at = top->next;
+  }
+  return count;
+}
+
+/// Owns a handle of the library and closes it.
+class Hdf5Handle {
+ public:
+  Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Hdf5Handle() {
+    if (good()) close_(id_);
+  }
+  Hdf5Handle(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
+  hid_t id() const { return id_; }
+  bool good() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// Checks a link for H5Lvisit(). Returns 0 to go on, and 1 to stop when the file refers to another
+/// one.
+herr_t check_link(hid_t group, const char* name, const H5L_info_t* link, void* /*unused*/) {
+  if (link->type == H5L_TYPE_SOFT) return 0;
+  if (link->type != H5L_TYPE_HARD) return 1;
+  const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), &H5Oclose);
+  if (!object.good()) return 1;
+  if (H5Iget_type(object.id()) != H5I_DATASET) return 0;
+  const Hdf5Handle made(H5Dget_create_plist(object.id()), &H5Pclose);
+  if (!made.good()) return 1;
+  return H5Pget_external_count(made.id()) != 0 || H5Pget_layout(made.id()) == H5D_VIRTUAL ? 1 : 0;
+}
+
+/// Returns true if an HDF5 file, which a MATLAB file of level 7.3 is, is complete in itself: no
+/// link and no data set makes the library open another file. Returns false also when the file
+/// cannot be read. Turns the library's messages off.
+bool hdf5_is_of_one_file(const std::string& path) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose);
+  return file.good() &&
+         H5Lvisit(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, &check_link, nullptr) == 0;
+}
 
 constexpr std::size_t kMaxVariables = 10'000;
 constexpr int kDeepestStruct = 8;
@@ -48,7 +231,7 @@ std::string shape_of(const matvar_t& v) {
   return fmt::format("{} {}{}", out, v.isComplex != 0 ? "complex " : "", class_name(v));
 }
 
-/// Elements; the largest number where they cannot be counted.
+/// Returns the number of elements, or the largest std::size_t on overflow.
 std::size_t elements_of(const matvar_t& v) {
   std::size_t count = 1;
   for (int i = 0; i < v.rank; ++i)
@@ -57,7 +240,7 @@ std::size_t elements_of(const matvar_t& v) {
   return count;
 }
 
-/// Of a variable with all that is in it.
+/// Returns the number of elements of a variable and of everything in it.
 std::size_t all_elements_of(const matvar_t& v) {
   if ((v.class_type != MAT_C_STRUCT && v.class_type != MAT_C_CELL) || v.data == nullptr)
     return elements_of(v);
@@ -71,19 +254,29 @@ std::size_t all_elements_of(const matvar_t& v) {
 
 }  // namespace
 
+MatLevel mat_level(std::string_view head) {
+  if (head.size() < kMatHeaderBytes || !head.starts_with("MATLAB ")) return MatLevel::none;
+  const std::string_view version = head.substr(124, 2), order = head.substr(126, 2);
+  if ((order != "IM" && order != "MI") || version[order == "IM" ? 0 : 1] != 0)
+    return MatLevel::none;
+  const char high = version[order == "IM" ? 1 : 0];
+  return high == 1 ? MatLevel::level_5 : high == 2 ? MatLevel::level_7_3 : MatLevel::none;
+}
+
 struct MatFileReader::State {
   InputFile input;
   std::unique_ptr<mat_t, CloseMat> file;
   std::vector<std::unique_ptr<matvar_t, FreeVariable>> tops;
   std::vector<bool> read;
-  std::size_t values = 0;  ///< that were read
-  std::size_t told = 0;    ///< variables, as the file says
+  std::size_t values = 0;  ///< values read so far
+  std::size_t stated = 0;  ///< number of variables that the file states
 
-  /// False where structs are too deep or too many.
+  /// Appends a variable, or the fields of a struct, to `out`. Returns false when structs are nested
+  /// too deeply or there are too many variables.
   bool list(matvar_t* v, const std::string& name, int depth, std::vector<MatVariable>& out) const {
     if (v == nullptr) return true;
     if (depth > kDeepestStruct || out.size() >= kMaxVariables) return false;
-    // Of a damaged struct libmatio has names and no fields.
+    // libmatio gives names but no fields for a damaged struct.
     const bool has_fields = v->class_type == MAT_C_STRUCT && v->data != nullptr;
     if (has_fields && elements_of(*v) == 1) {
       char* const* const fields = Mat_VarGetStructFieldnames(v);
@@ -118,8 +311,8 @@ MatFileReader::MatFileReader(FileProblems& problems) : state_(std::make_unique<S
   if (state_->input.read(head.data(), std::ssize(head), 0) != std::ssize(head) ||
       mat_level(head) == MatLevel::none) {
     problems.add(0, head.starts_with("\x1f\x8b")
-                        ? "a MATLAB file is compressed in itself: unpack it first (gunzip)"
-                        : "is no MATLAB file of level 5 or 7.3 (save it with -v7)");
+                        ? "is a MATLAB file within a gzip file: unpack it first (gunzip)"
+                        : "is not a MATLAB file of level 5 or 7.3 (save it with -v7)");
     return;
   }
   const bool is_hdf5 = mat_level(head) == MatLevel::level_7_3;
@@ -130,7 +323,7 @@ MatFileReader::MatFileReader(FileProblems& problems) : state_(std::make_unique<S
   }
   const auto name = fmt::format("/proc/self/fd/{}", state_->input.descriptor());
   if (is_hdf5 && !hdf5_is_of_one_file(name)) {
-    problems.add(0, "is damaged, or wants other files opened, which is not done");
+    problems.add(0, "is damaged, or refers to other files, which are never opened");
     return;
   }
   state_->file.reset(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
@@ -138,8 +331,8 @@ MatFileReader::MatFileReader(FileProblems& problems) : state_(std::make_unique<S
     problems.add(0, "cannot be read as a MATLAB file: its header is damaged");
     return;
   }
-  state_->told = *count;
-  if (is_hdf5) (void)Mat_GetDir(state_->file.get(), &state_->told);
+  state_->stated = *count;
+  if (is_hdf5) (void)Mat_GetDir(state_->file.get(), &state_->stated);
 }
 
 MatFileReader::~MatFileReader() = default;
@@ -150,13 +343,13 @@ std::optional<std::vector<MatVariable>> MatFileReader::variables(FileProblems& p
   while (matvar_t* const v = Mat_VarReadNextInfo(state_->file.get())) {
     state_->tops.emplace_back(v);
     if (state_->list(v, v->name != nullptr ? v->name : "?", 1, out)) continue;
-    problems.add(0, fmt::format("more than {} variables, or structs in one another deeper than {}",
+    problems.add(0, fmt::format("more than {} variables, or structs nested more than {} deep",
                                 kMaxVariables, kDeepestStruct));
     return std::nullopt;
   }
-  if (state_->tops.size() < state_->told) {
+  if (state_->tops.size() < state_->stated) {
     problems.add(0, fmt::format("is damaged: {} of its {} variables can be read",
-                                state_->tops.size(), state_->told));
+                                state_->tops.size(), state_->stated));
     return std::nullopt;
   }
   state_->read.resize(state_->tops.size());
@@ -170,10 +363,8 @@ bool MatFileReader::load(const MatVariable& variable, FileProblems& problems) {
   const bool first = !state_->read[variable.top];
   if (first && (__builtin_add_overflow(state_->values, all_elements_of(*top), &state_->values) ||
                 state_->values > most)) {
-    problems.add(0,
-                 fmt::format("{}: {}: more than {} values, which is the most that a file of this "
-                             "size may hold",
-                             show_text(variable.name), variable.shape, most));
+    problems.add(0, fmt::format("{}: {}: more than {} values, the limit for a file of this size",
+                                show_text(variable.name), variable.shape, most));
     return false;
   }
   state_->read[variable.top] = true;

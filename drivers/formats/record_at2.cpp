@@ -7,8 +7,8 @@
 #include "drivers/files/line_reader.h"
 #include "drivers/files/number_text.h"
 #include "drivers/formats/record_formats.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -24,8 +24,9 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-/// "NPTS= 4096, DT= .0100 SEC", "NPTS=4096 DT=0.01", "4096 0.0100 NPTS, DT": the first whole number
-/// is the count and the first number after it the step, wherever the words stand.
+/// Parses "NPTS= 4096, DT= .0100 SEC", "NPTS=4096 DT=0.01" or "4096 0.0100 NPTS, DT": the first
+/// whole number is the count and the next number the step, in any order of the words. Returns
+/// nullopt for other lines.
 std::optional<At2Header> parse_counts(const std::string& line) {
   if (line.find("NPTS") == std::string::npos || line.find("DT") == std::string::npos)
     return std::nullopt;
@@ -49,7 +50,7 @@ std::optional<At2Header> read_at2_header(LineReader& lines, FileProblems& proble
   for (std::string& kept : header) {
     std::string_view line;
     if (!lines.next(line)) {
-      if (!problems.any()) problems.add(0, "AT2: the four header lines are not all there");
+      if (!problems.any()) problems.add(0, "AT2: the file has fewer than four header lines");
       return std::nullopt;
     }
     kept = upper(line);
@@ -57,7 +58,7 @@ std::optional<At2Header> read_at2_header(LineReader& lines, FileProblems& proble
   if (header[2].find("UNITS OF G") == std::string::npos ||
       header[2].find("ACCELERATION") == std::string::npos)
     problems.add(3,
-                 fmt::format("AT2: the third line must say an acceleration in units of g, not {}",
+                 fmt::format("AT2: the third line must name an acceleration in units of g, not {}",
                              show_text(header[2])));
   const auto counts = parse_counts(header[3]);
   if (!counts)
@@ -66,7 +67,8 @@ std::optional<At2Header> read_at2_header(LineReader& lines, FileProblems& proble
   return counts;
 }
 
-/// Splits "-.123E-02-.456E-02": a sign in a number that is not its exponent's begins the next.
+/// Splits fields such as "-.123E-02-.456E-02": a sign begins the next number unless it follows an
+/// E.
 void split_stuck(std::string_view line, std::vector<std::string_view>& fields) {
   std::vector<std::string_view> blanks;
   split_blanks(line, blanks);

@@ -6,30 +6,28 @@
 #include "drivers/files/line_reader.h"
 #include "drivers/files/number_text.h"
 #include "drivers/formats/record_formats.h"
-#include "drivers/formats/table_header.h"
-#include "drivers/formats/table_text.h"
-#include "drivers/records/accel_unit.h"
+#include "drivers/formats/table.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/time_text.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::drivers {
 namespace {
 
 using Cells = std::vector<std::string>;
 
-/// Slower than this nobody samples a building, so that seconds would be a wrong guess.
+/// No building is sampled at a lower rate, so below it times are not in seconds.
 constexpr double kMinRateOfSeconds_hz = 5;
-/// In days, as spreadsheets count since 1900, samples are nearer than this (9 s).
+/// Samples are closer than this (9 s) when times are days since 1900, as in spreadsheets.
 constexpr double kStepOfDays = 1e-4;
 
-/// Where the header of a table is, and what stands around it.
+/// The header of a table and its surroundings.
 struct TableLayout {
   char delimiter = ',';
   char decimal = '.';
   std::int64_t header_line = 0, last_header_line = 0;
   Cells titles, units;
   std::int64_t before = 0;  ///< lines of text above the header
-  bool trailing = false;    ///< every line ends with a delimiter
+  bool trailing = false;    ///< each line ends with a delimiter
 };
 
 bool is_units_line(const Cells& cells) {
@@ -49,8 +47,8 @@ std::optional<Cells> cells_of(const LineReader& lines, std::string_view line, ch
   return cells;
 }
 
-/// Finds the header: the first line with a column of times, or the last one above the numbers.
-/// Leaves `line` at the first row; `at_row` is false when there is none.
+/// Finds the header: the first line with a time column, or the last line above the numbers. Leaves
+/// `line` at the first row; sets `at_row` to false when there is no row.
 std::optional<TableLayout> find_layout(LineReader& lines, std::string_view& line, bool& at_row,
                                        const RecordOptions& options, FileProblems& problems) {
   TableLayout layout;
@@ -78,7 +76,7 @@ std::optional<TableLayout> find_layout(LineReader& lines, std::string_view& line
   }
   if (problems.any()) return std::nullopt;
   if (layout.titles.empty()) {
-    problems.add(0, "there is no header: the names of the columns belong above the numbers");
+    problems.add(0, "there is no header: write the names of the columns above the numbers");
     return std::nullopt;
   }
   const auto row = at_row ? split_cells(line, ' ') : std::nullopt;
@@ -94,7 +92,7 @@ std::optional<TableLayout> find_layout(LineReader& lines, std::string_view& line
   return layout;
 }
 
-/// The decimal sign of the whole file, in a reading of its own.
+/// Reads the whole file to find its decimal sign.
 std::optional<char> find_decimal(const TableLayout& layout, FileProblems& problems) {
   LineReader lines(problems);
   DecimalScan scan;
@@ -108,6 +106,7 @@ std::optional<char> find_decimal(const TableLayout& layout, FileProblems& proble
   return scan.decimal(problems);
 }
 
+/// Adds the rows of a table to a record.
 class TableReader {
  public:
   TableReader(TableLayout layout, TableColumns columns, const RecordOptions& options,
@@ -189,8 +188,7 @@ class TableReader {
 
   std::string hint(std::size_t fields) const {
     if (layout_.delimiter == ',' && fields == 2 * columns_.count)
-      return ": decimal commas cannot be told from commas between columns; write semicolons "
-             "between "
+      return ": decimal commas look like commas between columns: write semicolons between "
              "columns";
     return {};
   }
@@ -222,7 +220,7 @@ class TableReader {
     return stamp->local_s - 60.0 * *offset_min;
   }
 
-  /// A number whose unit nobody said, where seconds cannot be meant.
+  /// Reports a time without a unit that cannot be in seconds.
   void doubt(std::int64_t line, double time) {
     const bool days = count_ == 1 && first_time_ > 2e4 && first_time_ < 8e4 && time > first_time_ &&
                       time < first_time_ + kStepOfDays;
@@ -235,8 +233,8 @@ class TableReader {
           "these times look like a spreadsheet's days: format the column as seconds, or as "
           "2026-11-21T17:00:00.01Z");
     if (late)
-      problems_.add(line, fmt::format("time {:g}: the header does not say the unit, and these are "
-                                      "no seconds: declare it with --time-unit ms, us or ns",
+      problems_.add(line, fmt::format("time {:g}: the header does not say the unit, and these "
+                                      "cannot be seconds: declare it with --time-unit ms, us or ns",
                                       time));
   }
 
@@ -259,7 +257,7 @@ bool is_table_header(std::string_view line, const RecordOptions& options) {
   if (!cells || begins_data(cells->front())) return false;
   if (delimiter == ' ' && cells->front() == "time_s") return true;
   if (cells->size() < 2) return false;
-  if (delimiter == ' ') cells->resize(1);  // further on it may be prose
+  if (delimiter == ' ') cells->resize(1);  // further words may be prose
   return std::any_of(cells->begin(), cells->end(), [&](const std::string& cell) {
     if (options.time_column.empty()) return is_time_title(cell);
     return cell == options.time_column || column_title(cell).name == options.time_column;

@@ -1,31 +1,96 @@
 #include "drivers/formats/record_file.h"
 
-#include <algorithm>
-#include <cmath>
+#include <libmseed.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <string>
+
+#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include "drivers/files/line_reader.h"
 #include "drivers/files/number_text.h"
+#include "drivers/files/packed_file.h"
+#include "drivers/formats/mat_variables.h"
 #include "drivers/formats/record_formats.h"
-#include "drivers/formats/record_signature.h"
-#include "drivers/formats/table_text.h"
+#include "drivers/formats/table.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/stations/station_formats.h"
 
 namespace framewatch::drivers {
 namespace {
 
-/// Lines that are read to find the format; the header of Xsens is the eighth.
+struct KnownUnread {
+  std::string_view begins;
+  std::string_view what;
+};
+
+constexpr std::string_view kInstead =
+    "export it as CSV or MATLAB .mat from the program that wrote it";
+constexpr std::array kUnread = {
+    KnownUnread{"MDF     ", "ASAM MDF"},
+    KnownUnread{"UnFinMF ", "ASAM MDF, unfinished"},
+    KnownUnread{"\x89HDF\r\n\x1a\n", "HDF5, but not a MATLAB file"},
+};
+
+/// Returns true if `head` begins a Universal File: a line of -1, then the number of a data set (58,
+/// 58b, 151).
+bool is_universal_file(std::string_view head) {
+  std::array<std::string_view, 2> lines;
+  for (std::string_view& line : lines) {
+    const std::size_t end = head.find('\n');
+    if (end == std::string_view::npos) return false;
+    line = trimmed(head.substr(0, head.find_first_of("\r\n")));
+    head.remove_prefix(end + 1);
+  }
+  std::string_view number = lines[1].substr(0, lines[1].find(' '));
+  if (number.ends_with('b')) number.remove_suffix(1);
+  return lines[0] == "-1" && parse_integer(number).value_or(0) > 0;
+}
+
+std::string bytes_of(FileProblems& problems) {
+  GzipInput file(problems.path());
+  std::string head(kSacHeaderBytes, '\0');
+  const std::int64_t got = file.read(head.data(), std::ssize(head));
+  if (!file.error().empty()) problems.add(0, file.error());
+  head.resize(static_cast<std::size_t>(std::max<std::int64_t>(got, 0)));
+  return head;
+}
+
+/// Returns the format of a binary file by its first bytes; nullopt when the file may be text. A
+/// known format that is not supported (MDF, UFF, HDF5, miniSEED 3, full SEED) becomes a problem
+/// that says what to do.
+std::optional<RecordFormat> format_by_signature(FileProblems& problems) {
+  const std::string head = bytes_of(problems);
+  if (mat_level(head) != MatLevel::none) return RecordFormat::mat;
+  if (head.size() >= 48 && MS_ISVALIDHEADER(head.data())) return RecordFormat::mseed;
+  if (is_sac_header(head)) return RecordFormat::sac;
+  std::string what;
+  for (const KnownUnread& known : kUnread)
+    if (head.starts_with(known.begins)) what = known.what;
+  if (is_universal_file(head)) what = "a Universal File (UFF, UNV)";
+  if (!what.empty())
+    problems.add(0, fmt::format("is {}, which is not supported: {}", what, kInstead));
+  if (head.starts_with("MS\x03"))
+    problems.add(0, "is miniSEED 3, which is not supported: write miniSEED 2");
+  if (head.starts_with("000001V "))
+    problems.add(0, "is a full SEED volume: extract its data records as miniSEED 2");
+  return std::nullopt;
+}
+
+/// Lines read to find the format; the header of Xsens files is the eighth line.
 constexpr std::int64_t kDetectLines = 20;
 
 bool holds(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
-/// Of numbers without a header: two in a row are time and value, one is a channel. More can be
-/// channels, or one channel that goes on line after line; that some of its rows are shorter, or
-/// that its end is marked, tells.
+/// Returns the format of numbers without a header. Two in a row are time and value, one is a
+/// channel. More are one channel that goes on line after line if a row is shorter or the end is
+/// marked; otherwise they could also be channels, which is a problem.
 RecordFormat format_of_numbers(std::int64_t first_line, std::size_t width, FileProblems& problems) {
   if (width <= 2) return width == 2 ? RecordFormat::columns : RecordFormat::rows;
   LineReader lines(problems);
@@ -45,7 +110,7 @@ RecordFormat format_of_numbers(std::int64_t first_line, std::size_t width, FileP
   return RecordFormat::detect;
 }
 
-/// A network's file says what it is on its first line; detect: it is none.
+/// Returns the format of a network's file by its first line; detect when it has another format.
 RecordFormat format_of_network(std::string_view first_line) {
   if (holds(first_line, "(Format v")) return RecordFormat::cosmos;
   if (first_line.starts_with("Origin Time")) return RecordFormat::knet;
@@ -57,9 +122,9 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
   if (problems.any()) return RecordFormat::detect;
   LineReader lines(problems);
   std::vector<std::string_view> fields;
-  std::size_t width = 0;  // of the first row of numbers
+  std::size_t width = 0;  // numbers in the first row
   std::int64_t first_line = 0;
-  bool text = false;  // above it
+  bool text = false;  // there is text above that row
   for (std::string_view line; lines.number() < kDetectLines && lines.next(line);) {
     if (lines.number() == 1 && format_of_network(line) != RecordFormat::detect)
       return format_of_network(line);
@@ -92,7 +157,7 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
   return RecordFormat::detect;
 }
 
-/// Reports options that the format needs and lacks, and those that do not apply to it.
+/// Reports missing options that the format needs, and options that do not apply to it.
 void check_declared(RecordFormat format, const RecordOptions& options, FileProblems& problems) {
   const bool of_station = format == RecordFormat::mseed || format == RecordFormat::sac;
   const bool needs_unit =

@@ -7,22 +7,25 @@
 #include "drivers/records/record.h"
 #include "drivers/records/record_options.h"
 
-// The readers of tables behind read_record, one file each (the others: drivers/stations). All of
-// them report to `problems` and return nothing when there is a problem.
+// Readers of tables for read_record (drivers/stations has the others). Each reads the file
+// problems.path() and returns nullopt with its problems when the file breaks a rule of its format.
 namespace framewatch::drivers {
 
-/// Whether a line is the header of a table: one of its cells is what a column of times is called.
+/// Returns true if a line is the header of a table: one of its cells is the title of a time column.
 bool is_table_header(std::string_view line, const RecordOptions& options);
-/// Columns with a header, as spreadsheets and loggers write them.
+/// Reads columns with a header, as spreadsheets and loggers write them.
 std::optional<Record> read_csv(const RecordOptions& options, FileProblems& problems);
+/// Reads PEER AT2.
 std::optional<Record> read_at2(FileProblems& problems);
+/// Reads the CSV files of Xsens DOT sensors.
 std::optional<Record> read_xsens(FileProblems& problems);
-/// On every line the time in s, then the same number of accelerations.
+/// Reads lines with a time in s and the same number of accelerations, in units of `unit_mps2`.
 std::optional<Record> read_columns(double unit_mps2, FileProblems& problems);
-/// MATLAB, level 5 or 7.3: vectors, columns of matrices, and fields of structs, as if they were
-/// columns of a table.
+/// Reads MATLAB files of level 5 or 7.3. Vectors, columns of matrices and fields of structs become
+/// the columns of a table.
 std::optional<Record> read_mat(const RecordOptions& options, FileProblems& problems);
-/// Accelerations of one channel, the same number on every line but the last, `step_s` apart.
+/// Reads the accelerations of one channel, `step_s` seconds apart, in units of `unit_mps2`. Every
+/// line but the last has the same number of them.
 std::optional<Record> read_rows(double unit_mps2, double step_s, FileProblems& problems);
 
 }  // namespace framewatch::drivers

@@ -5,37 +5,37 @@
 
 #include <fmt/core.h>
 
+#include "drivers/files/caught.h"
 #include "drivers/files/input_file.h"
-#include "drivers/files/trial_process.h"
-#include "drivers/formats/mat_signature.h"
 #include "drivers/formats/mat_variables.h"
 #include "drivers/formats/record_formats.h"
-#include "drivers/formats/table_header.h"
+#include "drivers/formats/table.h"
 #include "drivers/records/record_builder.h"
 
 namespace framewatch::drivers {
 namespace {
 
-/// The name that says, as in a table, that times are in s and channels in m/s^2.
+/// A variable of this name states, as in a table, that times are in s and channels in m/s^2.
 constexpr std::string_view kOwnTimeOfMat = "time_s";
 constexpr double kMinRateOfMatSeconds_hz = 5, kMaxRateOfMatSeconds_hz = 1e4;
 constexpr std::size_t kMaxListed = 20;
 
-/// A column of a table that a MATLAB file would be: a vector, or one line of a matrix.
+/// A column when a MATLAB file is read as a table: a vector, or one row or column of a matrix.
 struct MatColumn {
   std::string title;
   const MatVariable* variable = nullptr;
-  std::size_t line = 0;  ///< of the matrix
-  bool across = false;   ///< that line is a row
+  std::size_t line = 0;  ///< index of that row or column
+  bool across = false;   ///< it is a row
   std::size_t samples = 0;
 };
 
-/// A single number is a setting, fs or T, not a channel of one sample.
+/// Returns true for a row or column of numbers. A single number is a setting (fs, T), not a
+/// channel.
 bool is_vector(const MatVariable& v) {
   return v.is_numbers && std::min(v.rows, v.columns) == 1 && std::max(v.rows, v.columns) > 1;
 }
 
-/// "run." where every variable is in that struct.
+/// Returns "run." if every variable is in the struct `run`, else an empty text.
 std::string common_struct(const std::vector<MatVariable>& variables) {
   if (variables.empty()) return {};
   const std::string& first = variables.front().name;
@@ -45,6 +45,7 @@ std::string common_struct(const std::vector<MatVariable>& variables) {
   return all ? stem : "";
 }
 
+/// Chooses the columns of a table from the variables of a MATLAB file.
 class MatTable {
  public:
   MatTable(std::vector<MatVariable> variables, RecordOptions options, FileProblems& problems)
@@ -53,7 +54,7 @@ class MatTable {
     for (MatVariable& v : variables_) v.name.erase(0, stem.size());
   }
 
-  /// The columns and how they are to be read; empty with every problem.
+  /// Returns the columns and how to read them; nullopt with every problem.
   std::optional<TableColumns> choose() {
     if (options_.decimal || options_.zone_min)
       problems_.add(0, "--decimal and --zone are for tables of text");
@@ -83,7 +84,8 @@ class MatTable {
   const std::vector<MatColumn>& columns() const { return columns_; }
 
  private:
-  /// How many times there are, where a vector is called as times are; 0: not said.
+  /// Returns the length of the vector of times; 0 when no variable, or more than one, has such a
+  /// title.
   std::size_t samples_of_time() const {
     std::size_t samples = 0;
     int found = 0;
@@ -107,7 +109,7 @@ class MatTable {
     if (is_wanted(v.name) || v.name == options_.time_column)
       problems_.add(0, what + " cannot be a channel or the times");
     else if (v.may_be_meant && options_.columns.empty())
-      problems_.add(0, what + " cannot be a channel: say with --columns which are");
+      problems_.add(0, what + " cannot be a channel: name the channels with --columns");
     else
       notes_.push_back(what + ", left out");
   }
@@ -140,7 +142,7 @@ class MatTable {
           {fmt::format("{}.{}", v.name, k + 1), &v, k, across, across ? v.columns : v.rows});
   }
 
-  /// "acc" of --columns stands for acc.1, acc.2, ...
+  /// Replaces "acc" in --columns by acc.1, acc.2, ... when acc is a matrix.
   void take_whole_matrices() {
     std::vector<std::string> columns;
     for (const std::string& wanted : options_.columns) {
@@ -152,7 +154,7 @@ class MatTable {
     options_.columns = std::move(columns);
   }
 
-  /// What is as long as no time can be a channel only where nobody said which are.
+  /// Reports variables of different lengths, among those that --columns names if it is given.
   void check_lengths() {
     std::map<std::size_t, int> lengths;
     const std::string& time = options_.time_column;
@@ -164,10 +166,10 @@ class MatTable {
     }
     if (lengths.size() > 1) {
       problems_.add(0, wanted_length == 0
-                           ? "the variables have different lengths: say with --columns which are "
-                             "channels"
-                           : fmt::format("there are {} times, and variables of other lengths: say "
-                                         "with --columns which are channels",
+                           ? "the variables have different lengths: name the channels with "
+                             "--columns"
+                           : fmt::format("there are {} times, and variables of other lengths: name "
+                                         "the channels with --columns",
                                          wanted_length));
     }
   }
@@ -195,13 +197,14 @@ double sample_of(const MatColumn& c, std::size_t i) {
   return MatFileReader::number(*c.variable, c.across ? i * rows + c.line : c.line * rows + i);
 }
 
-/// Times whose unit nobody said are seconds where that is what a sensor samples at.
+/// Takes times without a unit as seconds if the rate is then that of a sensor; reports a problem
+/// otherwise.
 void check_seconds(const std::string& title, Record& record, FileProblems& problems) {
   if (record.rate_hz < kMinRateOfMatSeconds_hz || record.rate_hz > kMaxRateOfMatSeconds_hz)
     problems.add(0,
                  fmt::format("{}: the file does not say the unit, and in seconds it would be {:g} "
-                             "Hz: declare it with --time-unit s, ms, us or ns (of days, save "
-                             "86400 times them)",
+                             "Hz: declare it with --time-unit s, ms, us or ns (multiply "
+                             "days by 86400 before saving)",
                              show_text(title), record.rate_hz));
   record.notes.push_back(
       fmt::format("{} is taken as seconds: {:g} Hz", show_text(title), record.rate_hz));
@@ -223,7 +226,7 @@ std::optional<Record> read_mat_table(const RecordOptions& options, FileProblems&
     names.push_back(channel.name);
     used.push_back(channel.column);
   }
-  // A title may stand for a column with its unit cut off: only here it is known which are meant.
+  // --columns may name a title without its unit, so the columns meant are known only here.
   for (const std::size_t c : used)
     if (columns[c].samples != columns[used.front()].samples)
       problems.add(0, fmt::format("{} has {} samples, {} has {}", show_text(columns[c].title),
@@ -260,14 +263,15 @@ bool is_hdf5_mat(InputFile& file) {
          mat_level(head) == MatLevel::level_7_3;
 }
 
-/// More than ten times what a good file takes, also one of constants that packs to nothing.
+/// Allows ten times the time of an intact file, also of one that compresses to almost nothing.
 constexpr int kHdf5Least_s = 20, kHdf5BytesPerSecond = 2'000'000;
 
-/// libhdf5 does not survive every damaged file: one in some hundreds ends it, or never ends.
-Trial hdf5_trial(const RecordOptions& options, const std::string& path, std::int64_t bytes) {
+/// Reads a file in a child process first. libhdf5 crashes or hangs on one of some hundred damaged
+/// files.
+AttemptEnd try_hdf5(const RecordOptions& options, const std::string& path, std::int64_t bytes) {
   const auto attempt = [&] {
-    std::vector<Problem> unsaid;
-    FileProblems problems(path, unsaid);
+    std::vector<Problem> ignored;
+    FileProblems problems(path, ignored);
     (void)read_mat_table(options, problems);
   };
   const auto more_s = static_cast<int>(std::min<std::int64_t>(bytes / kHdf5BytesPerSecond, 3600));
@@ -279,14 +283,14 @@ Trial hdf5_trial(const RecordOptions& options, const std::string& path, std::int
 std::optional<Record> read_mat(const RecordOptions& options, FileProblems& problems) {
   InputFile file(problems.path());
   if (is_hdf5_mat(file)) {
-    const Trial trial = hdf5_trial(options, problems.path(), file.size());
-    if (trial == Trial::crashed)
-      problems.add(
-          0, "is damaged in a way that the library for such files (libhdf5) does not survive");
-    if (trial == Trial::too_long)
-      problems.add(0, "takes the library for such files (libhdf5) longer than a sound one would");
-    if (trial == Trial::not_begun)
-      problems.add(0, "is first read in a process of its own, and none can be begun");
+    const AttemptEnd end = try_hdf5(options, problems.path(), file.size());
+    if (end == AttemptEnd::crashed)
+      problems.add(0, "is damaged: it crashes the library for such files (libhdf5)");
+    if (end == AttemptEnd::too_long)
+      problems.add(0,
+                   "is damaged: the library for such files (libhdf5) does not finish reading it");
+    if (end == AttemptEnd::not_begun)
+      problems.add(0, "cannot be checked: the system starts no child process to read it first");
   }
   if (problems.any()) return std::nullopt;
   return read_mat_table(options, problems);

@@ -48,10 +48,10 @@ std::optional<XsensColumns> read_xsens_header(LineReader& lines, FileProblems& p
   return std::nullopt;
 }
 
-/// The device's 32-bit microsecond clock, continued over its wraps.
+/// Continues the device's 32-bit microsecond clock over its wraps.
 class DeviceClock {
  public:
-  /// Seconds on the clock that does not wrap.
+  /// Returns the seconds on a clock that does not wrap.
   double advance(std::int64_t stamp_us) {
     if (started_ && stamp_us - last_us_ < -kClockPeriodUs / 2) base_us_ += kClockPeriodUs;
     started_ = true;
@@ -76,7 +76,8 @@ class XsensReader {
     const auto stamp_us = parse_integer(stamp_text);
     const bool no_time = !stamp_us && std::isnan(parse_sample(stamp_text).value_or(0));
     if (!stamp_us && !no_time)
-      problems_.add(line, fmt::format("SampleTimeFine {}: no whole number", show_text(stamp_text)));
+      problems_.add(line,
+                    fmt::format("SampleTimeFine {}: not a whole number", show_text(stamp_text)));
     if (stamp_us && (*stamp_us < 0 || *stamp_us >= kClockPeriodUs))
       problems_.add(line, fmt::format("SampleTimeFine {}: not within 32 bits", *stamp_us));
     std::array<double, 3> accel_mps2{};

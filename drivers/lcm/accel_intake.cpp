@@ -8,11 +8,12 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::int64_t kLook_us = 1'000'000;
-constexpr std::int64_t kMovable_us = 10'000'000;  // silence after which a table may bind elsewhere
-constexpr std::size_t kMaxHeard = 4096;           // nodes, beyond those that are bound
+constexpr std::int64_t kCheck_us = 1'000'000;
+constexpr std::int64_t kMovable_us =
+    10'000'000;                          // silence after which a table may bind an axis elsewhere
+constexpr std::size_t kMaxHeard = 4096;  // nodes, beyond those that are bound
 
-/// Never 0.
+/// Returns a digest of time and values, never 0.
 std::uint64_t digest_of(const SensorNodeSample& sample) {
   auto digest = static_cast<std::uint64_t>(to_microseconds(sample.time));
   for (const double value : sample.accel_abs_mps2) {
@@ -23,6 +24,27 @@ std::uint64_t digest_of(const SensorNodeSample& sample) {
 }
 
 }  // namespace
+
+bool BoundSender::takes(const LcmSender& sender, std::int64_t arrival_us) {
+  if (sender == LcmSender{}) return true;
+  // The receiver's clock may have been set back.
+  arrival_us_ = std::min(arrival_us_, arrival_us);
+  contested_until_us_ = std::min(contested_until_us_, arrival_us + kHold_us);
+  const bool unbound = bound_ == LcmSender{};
+  if (sender != bound_ && !unbound && arrival_us - arrival_us_ <= kSilent_us) {
+    other_ = sender;
+    other_was_last_ = true;
+    ++others;
+    return false;
+  }
+  if (std::exchange(other_was_last_, false) && sender == bound_) {
+    ++contests;
+    contested_until_us_ = arrival_us + kHold_us;
+  }
+  bound_ = sender;
+  arrival_us_ = arrival_us;
+  return true;
+}
 
 AccelIntake::AccelIntake(std::vector<WantedAxis> wanted, Sink sink, IntakeSettings settings)
     : binding_(wanted),
@@ -67,7 +89,7 @@ IntakeResult AccelIntake::table(const std::string& stream, const void* data, std
       [&](const std::string& of, std::int32_t node) { return is_silent(of, node, arrival_us); });
   for (const AxisBinding::Contradiction& c : against) {
     ++(c.elsewhere ? counters_.elsewhere : counters_.renamed);
-    look_at_table(c.wanted, arrival_us, &c, stream);
+    check_table(c.wanted, arrival_us, &c, stream);
   }
   stream_.clear();
   forget_unbound();
@@ -107,7 +129,8 @@ const HeardNode* AccelIntake::node_numbered(std::int64_t number) const {
   return &std::next(heard_.begin(), number)->second;
 }
 
-/// Null when no configured axis is on the node. Nodes come in the same order every time, mostly.
+/// Returns null when the node carries no configured axis. Fast when nodes come in the same order
+/// each time.
 const AccelIntake::Node* AccelIntake::find_node(const std::string& channel, std::int32_t number) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const std::size_t at =
@@ -137,7 +160,8 @@ IntakeResult AccelIntake::accel(const std::string& channel, const void* data, st
   const Node* node = find_node(channel, sample->node);
   if (node == nullptr) return IntakeResult::foreign;
   arrival_us_ = received_us != 0 ? received_us : to_microseconds(sample->time);
-  if (arrival_us_ >= next_look_us_ || next_look_us_ - arrival_us_ > kLook_us) look(arrival_us_);
+  if (arrival_us_ >= next_check_us_ || next_check_us_ - arrival_us_ > kCheck_us)
+    check_nodes(arrival_us_);
   for (const int axis : node->axes)
     if (axis != AxisBinding::kNone) node_of_axis_[static_cast<std::size_t>(axis)] = node->heard;
   HeardNode& heard = *node->heard;
@@ -156,7 +180,7 @@ void AccelIntake::give(const Node& node, const SensorNodeSample& sample) {
       sink_({sample.time, node.axes[i], sample.accel_abs_mps2[i]});
 }
 
-/// Whether the message is of the sender that goes on, and new.
+/// Decides whether the message is new and from the sender that is followed.
 IntakeResult AccelIntake::judge(HeardNode& node, const SensorNodeSample& sample,
                                 const LcmSender& sender) {
   node.in_input = 1;
@@ -183,18 +207,18 @@ void AccelIntake::came_up() {
   for (auto& [place, node] : heard_) node.away = true;
 }
 
-void AccelIntake::look(std::int64_t arrival_us) {
-  next_look_us_ = arrival_us + kLook_us;
-  for (auto& [place, node] : heard_) look_at(place.first, place.second, node);
+void AccelIntake::check_nodes(std::int64_t arrival_us) {
+  next_check_us_ = arrival_us + kCheck_us;
+  for (auto& [place, node] : heard_) check_node(place.first, place.second, node);
   for (std::size_t axis = 0; axis < contradicted_.size(); ++axis)
-    look_at_table(axis, arrival_us, nullptr, {});
+    check_table(axis, arrival_us, nullptr, {});
 }
 
-/// against: what a table says otherwise, null when none did.
-void AccelIntake::look_at_table(std::size_t axis, std::int64_t arrival_us,
-                                const AxisBinding::Contradiction* against,
-                                const std::string& stream) {
-  const auto found = contradicted_[axis].look(against != nullptr, arrival_us);
+/// `against` is the contradiction by a table; null when there was no contradiction.
+void AccelIntake::check_table(std::size_t axis, std::int64_t arrival_us,
+                              const AxisBinding::Contradiction* against,
+                              const std::string& stream) {
+  const auto found = contradicted_[axis].update(against != nullptr, arrival_us);
   if (!found) return;
   IntakeNotice news;
   news.of_table = true;
@@ -206,8 +230,8 @@ void AccelIntake::look_at_table(std::size_t axis, std::int64_t arrival_us,
   notice(news);
 }
 
-void AccelIntake::look_at(const std::string& stream, std::int32_t number, HeardNode& node) {
-  for (const auto& found : node.watch.look(node.counts(), arrival_us_)) {
+void AccelIntake::check_node(const std::string& stream, std::int32_t number, HeardNode& node) {
+  for (const auto& found : node.watch.update(node.counts(), arrival_us_)) {
     if (!found) continue;
     IntakeNotice news;
     news.trouble = found->trouble;

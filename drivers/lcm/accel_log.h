@@ -6,21 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "drivers/files/problem.h"
-#include "drivers/lcm/accel_messages.h"
+#include "drivers/files/file_problems.h"
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/records/record.h"
 
 namespace framewatch::drivers {
 
 /// Writes a record as an LCM event log of accel_t, with the channel_table_t before the first
-/// instant and every second. Sensor time, which is also the events' time, is start_us + time_s;
-/// `addresses` is parallel to the record's names; `progress` hears the share that is written. Empty
-/// on success, else what went wrong.
+/// instant and every second. Sensor time, which is also the time of the events, is start_us +
+/// time_s. `addresses` are parallel to the names of the record. `progress` gets the share written
+/// so far, 0 to 1. Returns an empty string, or what went wrong.
 std::string write_accel_log(const std::string& path, const Record& record,
                             const std::vector<AxisAddress>& addresses, std::int64_t start_us,
                             const std::function<void(double)>& progress = {});
 
-/// What an event log holds, by the types its channels' first messages have.
+/// The channels of an event log, by the type of their first message.
 struct LogContents {
   std::vector<std::string> accel;      ///< channels of accel_t
   std::vector<std::string> estimates;  ///< channels of window_estimate_t
@@ -28,14 +28,15 @@ struct LogContents {
   std::int64_t events = 0;
 };
 
-/// Reads a log to its end. Empty, with the problems, when it cannot be read, is damaged or cut off
-/// or holds no event.
+/// Reads a log to its end. Returns nullopt and appends the problems when it cannot be read, is
+/// damaged or cut off, or holds no event.
 std::optional<LogContents> log_contents(const std::string& path, std::vector<Problem>& problems);
 
-/// The accelerations on one channel of a log as a record: columns as its channel_table_t names them
-/// and in its order, else "node<k>.<axis>" for every axis that ever has a value. Samples may come
-/// in any order; a repeated one counts once, an infinite one is missing; both are noted. Time is
-/// the sensors'.
+/// Returns the accelerations on one channel of a log as a record. The axes are those of its
+/// channel_table_t in that order, or "node<k>.<axis>" for every axis that ever has a value. Samples
+/// may come in any order. A repeated sample counts once and an infinite one is missing; both are
+/// noted. Time is that of the sensors. Returns nullopt and appends the problems when the log cannot
+/// be read or its messages break a rule.
 std::optional<Record> read_accel_log(const std::string& path, const std::string& channel,
                                      std::vector<Problem>& problems);
 

@@ -10,52 +10,52 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/lcm/channel_table.h"
+#include "drivers/lcm/accel_codec.h"
 
 namespace framewatch::drivers {
 
-/// One sensor axis of the configuration and where it says its samples come from.
+/// One sensor axis of the configuration and the address of its samples.
 struct WantedAxis {
   std::string name;
   std::string lcm_channel;
-  std::int32_t node = -1;  ///< < 0: no address, found by name only
+  std::int32_t node = -1;  ///< negative: no address, found by name
   int axis = 0;
-  bool on_lcm = true;  ///< else its samples come another way
+  bool on_lcm = true;  ///< false: its samples come another way
 };
 
-/// Finds the sensor axis that an axis of a node on an LCM channel is. An axis with a configured
-/// address is found there, whatever a channel table says; one without is found where a table names
-/// it, and stays there while samples come from that node.
+/// Finds the sensor axis for an axis of a node on an LCM channel. An axis with a configured address
+/// is bound to it, whatever a channel table says. An axis without an address is bound where a table
+/// names it, and stays there while samples come from that node.
 class AxisBinding {
  public:
   static constexpr int kNone = -1;
   using NodeAxes = std::array<int, 3>;  ///< sensor axis of x, y, z, or kNone
 
-  /// What a table says against the binding of a wanted axis: its name elsewhere, or another name at
-  /// its address. The names that records without any get, node<k>.<axis>, say nothing.
+  /// An entry of a table that contradicts the binding of a wanted axis: its name elsewhere, or
+  /// another name at its address. Placeholder names, node<k>.<axis>, contradict nothing.
   struct Contradiction {
     std::size_t wanted = 0;
     ChannelTable::Entry told;
     bool elsewhere = false;
   };
-  /// Whether nothing has come from a node for long.
+  /// Returns true if a node has been silent for long.
   using IsSilent = std::function<bool(const std::string& stream, std::int32_t node)>;
 
   explicit AxisBinding(std::vector<WantedAxis> wanted);
 
-  /// Binds what the table names and may be bound; gives back what it contradicts, which changes
-  /// nothing, once for each axis. Without is_silent no samples come.
+  /// Binds the axes that the table names and that may be bound. Returns its contradictions, one for
+  /// each axis, which change no binding. Without `is_silent` every node counts as silent.
   std::vector<Contradiction> apply(const std::string& stream, const ChannelTable& table,
                                    const IsSilent& is_silent = {});
-  /// Null when no wanted axis is on this node of this stream.
+  /// Returns the axes of a node of a stream; null when it carries no wanted axis.
   const NodeAxes* axes_of(const std::string& stream, std::int32_t node) const;
   bool carries(const std::string& stream) const { return bound_.contains(stream); }
-  /// Streams to listen to: every configured one, and ACCEL when an axis has no address.
+  /// Returns the streams to listen to: every configured one, and ACCEL when an axis has no address.
   std::vector<std::string> streams() const;
-  /// Names of the axes that no stream carries so far.
+  /// Returns the names of the axes that are not bound yet.
   std::vector<std::string> unbound() const;
 
-  /// Of what tables have bound.
+  /// Writes or reads the bindings by tables.
   template <typename Archive>
   void archive(Archive& a) {
     std::vector<std::size_t> named;
@@ -79,11 +79,11 @@ class AxisBinding {
   };
   bool give(std::size_t wanted, const Place& place);
   void take(std::size_t wanted);
-  /// The axis bound to the place, or kNone.
+  /// Returns the axis bound to the place, or kNone.
   int axis_at(const Place& place) const;
 
   std::vector<WantedAxis> wanted_;
-  std::map<std::string, std::size_t> by_name_;  ///< those on LCM
+  std::map<std::string, std::size_t> by_name_;  ///< axes on LCM
   std::map<std::string, std::map<std::int32_t, NodeAxes>, std::less<>> bound_;
   std::vector<std::optional<Place>> place_;  ///< by wanted axis
 };

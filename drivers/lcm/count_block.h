@@ -12,15 +12,15 @@
 
 namespace framewatch::drivers {
 
-/// LCM channels of raw samples in the logs of a history.
+/// LCM channels of raw samples in the logs of the history.
 inline constexpr const char* kCountsChannel = "COUNTS";
 inline constexpr const char* kCountsTableChannel = "COUNTS_CHANNELS";
 
-/// Counts with a meaning of their own: no valid value; beyond the range.
+/// Special counts: no valid value, and a value beyond the range.
 inline constexpr std::int32_t kNoCount = INT32_MIN;
 inline constexpr std::int32_t kMaxCount = INT32_MAX;
 
-/// Collects samples for one accel_counts_t.
+/// Collects samples for one accel_counts_t. Call takes() before add(), then encode().
 class CountBlock {
  public:
   explicit CountBlock(double resolution_mps2) { block_.resolution_mps2 = resolution_mps2; }
@@ -28,10 +28,10 @@ class CountBlock {
   bool empty() const { return block_.offset_us.empty(); }
   std::size_t size() const { return block_.offset_us.size(); }
   std::int64_t first_us() const { return block_.time_us; }
-  /// Whether the sample's time can be said in this block.
+  /// Returns true if the block can represent the time of the sample.
   bool takes(const estimator::AccelSample& sample) const;
   void add(const estimator::AccelSample& sample);
-  /// The message; the block is empty afterwards.
+  /// Returns the encoded message, valid until the next call, and empties the block.
   const std::vector<std::uint8_t>& encode();
 
  private:
@@ -39,10 +39,10 @@ class CountBlock {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// The number of counts nearest to a value.
+/// Returns the nearest number of counts; kNoCount for NaN, +-kMaxCount beyond the range.
 std::int32_t count_of(double accel_mps2, double resolution_mps2);
 
-/// The table that names the channels 0, 1, ... of the blocks, encoded.
+/// Returns the encoded channel_table_t that names the channels 0, 1, ... of the blocks.
 std::vector<std::uint8_t> count_table(const std::vector<std::string>& names, double rate_hz,
                                       std::int64_t time_us);
 

@@ -19,7 +19,8 @@ namespace {
 constexpr std::string_view kUdpm = "udpm://", kGroup = "239.255.76.67";
 constexpr std::uint16_t kPort = 7667;
 
-/// Group and port of udpm://GROUP:PORT?..., either of which may be missing.
+/// Parses udpm://GROUP:PORT?..., where group and port may be missing. Returns nullopt for any other
+/// text.
 std::optional<MulticastGroup> group_of(std::string_view url, const LcmReception& reception) {
   if (!url.starts_with(kUdpm)) return std::nullopt;
   std::string_view place = url.substr(kUdpm.size());
@@ -41,7 +42,7 @@ std::optional<MulticastGroup> group_of(std::string_view url, const LcmReception&
                         reception.receive_buffer_bytes};
 }
 
-/// What keeps udpm:// from starting, as far as a socket of our own can tell.
+/// Returns why udpm:// cannot start, as far as a probing socket can tell.
 std::string why_no_multicast(const std::optional<MulticastGroup>& group) {
   if (!group)
     return "expected a multicast address (224.0.0.0 to 239.255.255.255) and a port (1 to 65535)";
@@ -52,7 +53,7 @@ std::string why_no_multicast(const std::optional<MulticastGroup>& group) {
   const Descriptor probe(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0)
     return "there is a route to it, so something else is wrong: an option LCM does not know, or a "
-           "port that another program holds alone";
+           "port that another program uses exclusively";
   if (errno != ENETUNREACH) return std::strerror(errno);
   char text[INET_ADDRSTRLEN] = "";
   ::inet_ntop(AF_INET, &address.sin_addr, text, sizeof text);
@@ -82,8 +83,8 @@ std::unique_ptr<LcmProvider> open_lcm(const std::string& url, const LcmReception
     return nullptr;
   }
   if (!multicast) return lcm;
-  MulticastSocket trial;
-  if (trial.open(*lcm->group(), error)) return lcm;
+  MulticastSocket probe;
+  if (probe.open(*lcm->group(), error)) return lcm;
   error = fmt::format("{}: {}", problem, error);
   return nullptr;
 }

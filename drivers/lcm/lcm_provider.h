@@ -6,25 +6,25 @@
 
 #include <lcm/lcm-cpp.hpp>
 
-#include "drivers/lcm/lcm_reception.h"
+#include "drivers/lcm/lcm_settings.h"
 #include "drivers/lcm/multicast/multicast_socket.h"
 
 namespace framewatch::drivers {
 
-/// One LCM provider. liblcm publishes; of udpm:// framewatch receives by itself (LcmSource),
-/// because liblcm's receiver believes the lengths in a packet and takes packets from everywhere.
+/// One LCM provider. liblcm publishes. framewatch itself receives udpm:// (LcmSource), because the
+/// receiver of liblcm trusts the lengths in a packet and accepts packets from everywhere.
 class LcmProvider : public lcm::LCM {
  public:
   explicit LcmProvider(const std::string& url, const LcmReception& reception = {});
 
-  /// The group of a udpm:// provider, else empty.
+  /// Returns the group of a udpm:// provider; nullopt for other providers.
   const std::optional<MulticastGroup>& group() const { return group_; }
 
  private:
   std::optional<MulticastGroup> group_;
 };
 
-/// Null, with the reason and the remedy in `error`, when LCM cannot start there.
+/// Opens a provider. Returns null and sets `error`, with the remedy, when LCM cannot start there.
 std::unique_ptr<LcmProvider> open_lcm(const std::string& url, const LcmReception& reception,
                                       std::string& error);
 

@@ -9,7 +9,8 @@
 namespace framewatch::drivers {
 namespace {
 
-/// LCM takes channel names as regular expressions.
+/// Returns a regular expression for exactly this channel: LCM takes channel names as regular
+/// expressions.
 std::string literally(const std::string& channel) {
   std::string pattern;
   for (const char c : channel) {

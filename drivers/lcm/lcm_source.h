@@ -12,7 +12,7 @@
 
 namespace framewatch::drivers {
 
-/// A message that has come. Refers to memory that is its giver's.
+/// A received message. Refers to memory of its source.
 struct LcmMessage {
   const std::string& channel;
   const void* data = nullptr;
@@ -21,28 +21,30 @@ struct LcmMessage {
   LcmSender sender{};
 };
 
-/// Hands the messages of chosen LCM channels to one function, and knows how far behind it is.
+/// Hands the messages of chosen LCM channels to one function and measures its backlog. Wait for
+/// descriptor(), then call handle().
 class LcmSource {
  public:
-  /// Must not throw: C code is underneath.
+  /// Must not throw: liblcm, which is C code, calls it.
   using Handler = std::function<void(const LcmMessage& message)>;
 
-  /// `lcm` must outlive this. Channel names are taken literally. queue_capacity: messages of each
-  /// channel that may wait.
+  /// `lcm` must outlive this object. Channel names are literal. `queue_capacity` is the number of
+  /// messages of each channel that may wait.
   LcmSource(LcmProvider& lcm, const std::vector<std::string>& channels, int queue_capacity,
             Handler handler);
   ~LcmSource();
   LcmSource(const LcmSource&) = delete;
   LcmSource& operator=(const LcmSource&) = delete;
 
-  /// Waits for a message at most `timeout_ms`, then handles it and those that wait behind it, at
-  /// most queue_capacity. False when LCM failed.
+  /// Waits at most `timeout_ms` for a message, then handles the waiting messages, at most
+  /// queue_capacity. Returns false when LCM failed.
   [[nodiscard]] bool handle(int timeout_ms);
-  /// Readable while messages wait.
+  /// Returns a descriptor that is readable while messages wait.
   int descriptor() const;
 
+  /// Returns the largest number of messages that waited at once.
   std::int64_t backlog_high_water() const { return backlog_high_water_; }
-  /// What did not come this far, of udpm://; other providers drop nothing.
+  /// Returns the messages of udpm:// that were dropped; other providers drop no messages.
   ReceiverCounters dropped() const;
 
  private:
@@ -53,7 +55,7 @@ class LcmSource {
   LcmProvider& lcm_;
   std::int64_t capacity_;
   Handler handler_;
-  std::unique_ptr<LcmReceiver> receiver_;  ///< null: liblcm dispatches
+  std::unique_ptr<LcmReceiver> receiver_;  ///< null: liblcm receives
   ReceivedMessage message_;
   std::vector<lcm::Subscription*> subscriptions_;
   std::int64_t backlog_high_water_ = 0;

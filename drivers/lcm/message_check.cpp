@@ -1,9 +1,12 @@
 #include "drivers/lcm/message_check.h"
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include <framewatch/message_layouts.hpp>
+
+#include <fmt/core.h>
 
 namespace framewatch::drivers {
 namespace {
@@ -14,7 +17,7 @@ std::uint64_t big_endian(std::span<const std::uint8_t> bytes) {
   return value;
 }
 
-/// Reads over a payload's fields without ever leaving it.
+/// Steps through the fields of a payload. Each function returns false at the end of the payload.
 class PayloadReader {
  public:
   explicit PayloadReader(std::span<const std::uint8_t> payload) : rest_(payload) {}
@@ -32,7 +35,7 @@ class PayloadReader {
     return skip(4);
   }
   bool string() {
-    std::size_t bytes = 0;  // with its closing zero
+    std::size_t bytes = 0;  // including the closing zero
     return length(bytes) && bytes >= 1 && bytes <= rest_.size() && rest_[bytes - 1] == 0 &&
            skip(bytes);
   }
@@ -63,6 +66,15 @@ bool has_layout(std::span<const std::uint8_t> payload, std::span<const FieldLayo
   return reader.at_end();
 }
 
+constexpr std::string_view kDefaultPrefix = "FRAMEWATCH_";  // of LCM channels in lcmtypes/*.lcm
+
+bool matches(std::string_view lcm_channel, std::string_view pattern) {
+  if (pattern.ends_with('*')) return lcm_channel.starts_with(pattern.substr(0, pattern.size() - 1));
+  if (pattern.starts_with('*'))  // * stands for at least one character
+    return lcm_channel.size() >= pattern.size() && lcm_channel.ends_with(pattern.substr(1));
+  return lcm_channel == pattern;
+}
+
 }  // namespace
 
 std::optional<std::int64_t> fingerprint(std::span<const std::uint8_t> payload) {
@@ -76,6 +88,43 @@ bool is_well_formed(std::span<const std::uint8_t> payload, std::int64_t wanted) 
       kMessageLayouts,
       [wanted](const MessageLayout& candidate) { return candidate.fingerprint() == wanted; });
   return layout != std::end(kMessageLayouts) && has_layout(payload, layout->fields);
+}
+
+const char* known_type(std::int64_t fingerprint) {
+  for (const MessageLayout& layout : kMessageLayouts)
+    if (layout.fingerprint() == fingerprint) return layout.type;
+  return nullptr;
+}
+
+const char* type_of_lcm_channel(const std::string& lcm_channel, const std::string& prefix) {
+  // First tables, which alone end in _CHANNELS, then channels of sensors, then those of framewatch.
+  for (const MessageLayout& layout : kMessageLayouts)
+    if (layout.lcm_channel.starts_with('*') && matches(lcm_channel, layout.lcm_channel))
+      return layout.type;
+  for (const MessageLayout& layout : kMessageLayouts)
+    if (!layout.lcm_channel.starts_with(kDefaultPrefix) && matches(lcm_channel, layout.lcm_channel))
+      return layout.type;
+  if (!lcm_channel.starts_with(prefix)) return nullptr;
+  const std::string_view rest = std::string_view(lcm_channel).substr(prefix.size());
+  for (const MessageLayout& layout : kMessageLayouts)
+    if (layout.lcm_channel.starts_with(kDefaultPrefix) &&
+        matches(rest, layout.lcm_channel.substr(kDefaultPrefix.size())))
+      return layout.type;
+  return nullptr;
+}
+
+std::string why_not(const std::string& type, std::span<const std::uint8_t> payload) {
+  const std::optional<std::int64_t> found = fingerprint(payload);
+  if (!found) return fmt::format("{} bytes are too few for {}", payload.size(), type);
+  const char* known = known_type(*found);
+  if (known != nullptr && known == type)
+    return fmt::format("a damaged {}: its lengths do not fit its size", type);
+  if (known != nullptr) return fmt::format("{} where {} belongs", known, type);
+  return fmt::format(
+      "not the {0} of framewatch {1} (fingerprint {2:016x}): the bytes are damaged or foreign, or "
+      "a "
+      "newer framewatch wrote them with a newer {0}; read them with that version",
+      type, FRAMEWATCH_VERSION, static_cast<std::uint64_t>(*found));
 }
 
 }  // namespace framewatch::drivers

@@ -7,18 +7,18 @@
 
 namespace framewatch::drivers {
 
-/// One field of a message, as its .lcm file declares it.
+/// Describes one field of a message as its .lcm file does.
 struct FieldLayout {
   std::string_view name;
-  int bytes;         ///< of one element; 0: a string, which says its own length
-  int elements;      ///< of an array of fixed length; else 1
-  int length_field;  ///< index of the field that holds the array's length; -1: none
-  bool is_length;    ///< arrays after it have this length, which must not be negative
+  int bytes;         ///< of one element; 0: a string, which holds its length
+  int elements;      ///< number in an array of fixed length; else 1
+  int length_field;  ///< index of the field with the array's length, or -1
+  bool is_length;    ///< holds the length of arrays after it; must not be negative
 };
 
-/// One type of message. <framewatch/message_layouts.hpp>, which the build makes from
-/// lcmtypes/*.lcm, holds kMessageLayouts with all of them, and each one's fields (kAccelFields for
-/// accel_t).
+/// Describes one type of message. The build generates <framewatch/message_layouts.hpp> from
+/// lcmtypes/*.lcm, with kMessageLayouts for all types and a list of fields for each (kAccelFields
+/// for accel_t).
 struct MessageLayout {
   const char* type;               ///< "accel_t"
   std::int64_t (*fingerprint)();  ///< the first 8 bytes of every payload
@@ -26,9 +26,9 @@ struct MessageLayout {
   std::span<const FieldLayout> fields;
 };
 
-/// Byte of a payload at which the field begins; the first is 8, after the fingerprint. For constant
-/// expressions: does not compile when a field before it has no fixed size or there is none of this
-/// name.
+/// Returns the byte of a payload at which a field begins; the first field is at 8, after the
+/// fingerprint. Does not compile when there is no field of this name, or when a field before it has
+/// no fixed size.
 consteval std::size_t offset_of(std::span<const FieldLayout> fields, std::string_view name) {
   std::size_t offset = 8;
   for (const FieldLayout& field : fields) {

@@ -7,14 +7,19 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::int64_t kEstablished = 8;  // messages in order that make a sequence
-constexpr std::int64_t kSuspect = 20;     // against 1 that a message in order takes away
+constexpr std::int64_t kEstablished = 8;  // messages in order that establish a sequence
+constexpr std::int64_t kSuspect = 20;     // a message in order subtracts 1
 constexpr std::int64_t kConvicted = 60, kMaxSuspicion = 100;
 constexpr std::int64_t kMaxTime_us = 4'000'000'000'000'000'000;  // sums do not overflow
-constexpr double kBuffered_s = 10;  // that a network may hold messages back
+constexpr double kBuffered_s = 10;  // for which a network may hold messages back
 
 double seconds(std::int64_t from_us, std::int64_t to_us) {
   return std::max(0.0, 1e-6 * (static_cast<double>(to_us) - static_cast<double>(from_us)));
+}
+
+bool is_rate(std::int64_t count, std::int64_t of) {
+  return count >= SequenceWatch::kFew &&
+         static_cast<double>(count) > SequenceWatch::kMost_ratio * static_cast<double>(of);
 }
 
 }  // namespace
@@ -74,7 +79,7 @@ SequenceCounter::Place SequenceCounter::place_of(const Message& m) const {
   return (track_.seen & std::uint64_t{1} << -step) != 0 ? Place::again : Place::late;
 }
 
-/// Whether as many samples may have been taken since the newest one.
+/// Returns true if the time since the newest message allows that many samples.
 bool SequenceCounter::is_loss(std::int64_t step, const Message& m) const {
   if (!suspicious()) return true;
   const double span_s = std::min(seconds(track_.time_us, m.time_us),
@@ -140,7 +145,7 @@ SequenceCounter::Verdict SequenceCounter::leap(const Message& m) {
   return Verdict::held;
 }
 
-/// From here on the numbers are the node's, and nothing before them is missed.
+/// Continues the sequence from this message; earlier numbers do not count as lost.
 SequenceCounter::Verdict SequenceCounter::follow(const Message& m) {
   const bool first = !std::exchange(started_, true);
   leap_was_backwards_ = !first && m.sequence < track_.newest && m.time_us <= track_.time_us;
@@ -177,6 +182,35 @@ void SequenceCounter::follow_clock(std::int64_t arrival_us) {
     if (*until_us > arrival_us + kHold_us) *until_us = arrival_us + kHold_us;
   for (Track* track : {&track_, &former_})
     track->arrival_us = std::min(track->arrival_us, arrival_us);
+}
+
+std::array<std::optional<SequenceWatch::News>, kSequenceTroubles> SequenceWatch::update(
+    const Counts& now, std::int64_t arrival_us) {
+  const Counts newest = seconds_[(at_ + kSpan_s - 1) % kSpan_s];
+  const Counts before = std::exchange(seconds_[at_ % kSpan_s], now);
+  ++at_;
+  const std::int64_t received = now.received - before.received;
+  const std::int64_t lost = now.lost - before.lost;
+  const std::int64_t twice = now.duplicates - before.duplicates;
+  const std::int64_t leaps = now.leaps - before.leaps, contests = now.contests - before.contests;
+  struct Judged {
+    std::int64_t count, of;
+    bool bad;
+  };
+  const Judged judged[kSequenceTroubles] = {
+      {contests, received + contests, now.contests > newest.contests},
+      {leaps, received, now.leaps > newest.leaps},
+      {twice, received + twice, is_rate(twice, received + twice)},
+      {lost, received + lost, is_rate(lost, received + lost)},
+  };
+  std::array<std::optional<News>, kSequenceTroubles> out;
+  for (std::size_t t = 0; t < kSequenceTroubles; ++t) {
+    const auto news = troubles_[t].update(judged[t].bad, arrival_us);
+    if (news)
+      out[t] = News{static_cast<SequenceTrouble>(t), *news == Trouble::News::over, judged[t].count,
+                    judged[t].of};
+  }
+  return out;
 }
 
 }  // namespace framewatch::drivers

@@ -10,7 +10,7 @@ namespace framewatch::drivers {
 bool RecordCsvWriter::open(const std::string& path, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (name.find_first_of(",\"\r\n") == std::string::npos) continue;
-    error_ = fmt::format("channel name '{}' has a comma, quote or line end in it", name);
+    error_ = fmt::format("channel name '{}' must not contain a comma, quote or line end", name);
     return false;
   }
   line_ = "time_s";

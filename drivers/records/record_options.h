@@ -22,24 +22,26 @@ enum class RecordFormat {
   sac
 };
 
-/// What a file does not say itself. Declaring what it says is a problem, and so is leaving out what
-/// decides between two readings.
+/// Declares what a record file does not say itself. It is a problem to declare something that the
+/// file states, and to leave out something that decides between two readings of the file.
 struct RecordOptions {
   RecordFormat format = RecordFormat::detect;
-  std::optional<double> unit_mps2;    ///< m/s^2 of one of the file's
-  std::string station_xml;            ///< a StationXML file, which says that and more; empty: none
+  std::optional<double> unit_mps2;  ///< m/s^2 in one unit of the file
+  std::string station_xml;  ///< path of a StationXML file that describes the channels, or empty
   std::optional<double> step_s;       ///< time between samples
-  std::string time_column;            ///< title of the column of times; empty: what it is called
-  std::optional<double> time_unit_s;  ///< seconds of one of that column's
-  std::optional<int> zone_min;        ///< of time stamps without one, minutes ahead of UTC
+  std::string time_column;            ///< title of the time column; empty: found by common titles
+  std::optional<double> time_unit_s;  ///< seconds in one unit of that column
+  std::optional<int> zone_min;        ///< minutes ahead of UTC of time stamps without a zone
   std::optional<char> decimal;        ///< '.' or ','
-  std::vector<std::string> columns;   ///< titles of the channels; empty: all but the time
-  std::vector<std::string> names;     ///< of the channels, in the file's order; empty: its own
+  std::vector<std::string> columns;   ///< titles of the columns to read; empty: all but the time
+  std::vector<std::string>
+      names;  ///< new channel names in the file's order; empty: the file's names
 };
 
-/// By its name in record_format_names(), "two-columns" or "detect".
+/// Returns the format of a name in record_format_names(), "two-columns" or "detect". Returns
+/// nullopt for any other name.
 std::optional<RecordFormat> record_format(std::string_view name);
-/// "csv, at2, ... or sac"
+/// Returns the names of all formats for a message: "csv, at2, ... or sac".
 std::string record_format_names();
 
 }  // namespace framewatch::drivers

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kDigits = "0123456789";
 
-/// The whole number at the beginning of `text`, which is taken off; 0 when there is none.
+/// Removes the whole number at the beginning of `text` and returns it; 0 when there is no number.
 std::size_t take_number(std::string_view& text) {
   const std::size_t end = std::min(text.find_first_not_of(kDigits), text.size());
   const auto value = parse_integer(text.substr(0, end));
@@ -30,7 +30,8 @@ std::optional<FortranFormat> find_fortran_format(std::string_view text) {
   text.remove_prefix(begin + 1);
   FortranFormat format;
   format.per_line = take_number(text);
-  if (text.starts_with('P') || text.starts_with('p')) {  // a factor of scale, of what is written
+  if (text.starts_with('P') ||
+      text.starts_with('p')) {  // a scale factor, which applies to writing only
     text.remove_prefix(1);
     text.remove_prefix(text.starts_with(',') ? 1 : 0);
     format.per_line = take_number(text);
@@ -62,8 +63,8 @@ std::optional<std::vector<double>> read_fortran_numbers(LineReader& lines,
       if (!number || !std::isfinite(*number)) {
         problems.add(lines.number(),
                      field.empty()
-                         ? fmt::format("{}: {} of {} numbers", what, numbers.size(), count)
-                         : fmt::format("{}: {} is no finite number", what, show_text(field)));
+                         ? fmt::format("{}: only {} of {} numbers", what, numbers.size(), count)
+                         : fmt::format("{}: {} is not a finite number", what, show_text(field)));
         return std::nullopt;
       }
       numbers.push_back(*number);

@@ -10,17 +10,17 @@
 
 namespace framewatch::drivers {
 
-/// Numbers in columns of one width, as Fortran writes them: nothing need stand between two of them.
+/// Describes numbers in columns of one width, as Fortran writes them without separators.
 struct FortranFormat {
   std::size_t per_line = 0;
   std::size_t width = 0;  ///< characters
 };
 
-/// The format in a text, "Format=(8F10.3)"; empty when there is none.
+/// Finds the format in a text such as "Format=(8F10.3)". Returns nullopt when there is no format.
 std::optional<FortranFormat> find_fortran_format(std::string_view text);
 
-/// Reads so many numbers from the lines that follow. Empty, with a problem that names `what`, when
-/// there are fewer or one is none.
+/// Reads `count` numbers from the lines that follow. Returns nullopt with a problem that names
+/// `what` when there are fewer, or when one is not a finite number.
 std::optional<std::vector<double>> read_fortran_numbers(LineReader& lines,
                                                         const FortranFormat& format,
                                                         std::size_t count, std::string_view what,

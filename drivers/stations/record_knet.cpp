@@ -8,9 +8,8 @@
 
 #include "drivers/files/line_reader.h"
 #include "drivers/files/number_text.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/time_text.h"
+#include "drivers/records/unit_text.h"
 #include "drivers/stations/station_channel.h"
 #include "drivers/stations/station_formats.h"
 
@@ -19,7 +18,7 @@ namespace {
 
 constexpr int kKnetHeaderLines = 17;
 constexpr std::size_t kKnetTitleWidth = 18;  ///< "Sampling Freq(Hz) 100Hz"
-/// The header's time is the trigger's; the record begins so much before it.
+/// The header gives the time of the trigger; the record begins this long before it.
 constexpr double kBeforeTrigger_s = 15;
 constexpr double kAheadOfUtc_s = 9 * 3600;
 
@@ -39,7 +38,7 @@ class KnetReader {
     const double unit_mps2 = scale();
     channel.start_utc_s = start();
     channel.header = direction(channel.name);
-    channel.treatment = "uncorrected; not used of the header: coordinates, event";
+    channel.treatment = "uncorrected; not used from the header: coordinates, event";
     if (!problems_.any() && !(rate_hz > 0 && rate_hz <= RecordBuilder::kMaxRateHz))
       complain("Sampling Freq", "must be a rate");
     if (problems_.any()) return std::nullopt;
@@ -54,10 +53,11 @@ class KnetReader {
         const auto count = parse_integer(field);
         if (!count)
           problems_.add(lines_.number(),
-                        fmt::format("K-NET: {} is no whole number", show_text(field)));
+                        fmt::format("K-NET: {} is not a whole number", show_text(field)));
         accel_mps2.push_back(static_cast<double>(count.value_or(0)) * unit_mps2);
         if (accel_mps2.size() > RecordBuilder::kMaxValues)
-          problems_.add(lines_.number(), "K-NET: too many values");
+          problems_.add(lines_.number(), fmt::format("K-NET: a record holds at most {} values",
+                                                     RecordBuilder::kMaxValues));
         if (problems_.any()) return std::nullopt;
       }
     }
@@ -76,11 +76,12 @@ class KnetReader {
       header_.insert({std::string(title), {lines_.number(), std::string(text)}});
     }
     if (lines_.number() < kKnetHeaderLines && !problems_.any())
-      problems_.add(0, "K-NET: the 17 lines of the header are not all there");
+      problems_.add(0, "K-NET: the header has fewer than 17 lines");
     return !problems_.any();
   }
 
-  /// The line whose title begins so; a problem when there is none.
+  /// Returns the header line whose title begins with `title`. Adds a problem when there is no such
+  /// line.
   KnetLine find(const std::string& title) {
     const auto at = header_.lower_bound(title);
     if (at != header_.end() && at->first.starts_with(title)) return at->second;
@@ -100,7 +101,7 @@ class KnetReader {
     return value.value_or(0);
   }
 
-  /// "3920(gal)/6182761": m/s2 of 1.
+  /// Returns the m/s^2 of one count, from "3920(gal)/6182761".
   double scale() {
     const std::string text = find("Scale Factor").text;
     const std::size_t unit = text.find("(gal)/");
@@ -113,18 +114,19 @@ class KnetReader {
     return 0;
   }
 
-  /// "2018/11/30 17:29:21" in Japan's time.
+  /// Returns the time of the first sample since 1970, from "2018/11/30 17:29:21" in Japan's time.
   std::optional<double> start() {
     std::string text = find("Record Time").text;
     for (char& c : text)
       if (c == '/') c = '-';
     const auto stamp = parse_time_stamp(text);
-    if (!stamp && !problems_.any()) complain("Record Time", "is no time");
+    if (!stamp && !problems_.any()) complain("Record Time", "is not a time");
     if (!stamp) return std::nullopt;
     return stamp->local_s - kAheadOfUtc_s - kBeforeTrigger_s;
   }
 
-  /// K-NET names its directions, KiK-net numbers them: 1 to 3 in the borehole, 4 to 6 above it.
+  /// Reads the direction and sets `name`. K-NET names directions, KiK-net numbers them: 1 to 3 in
+  /// the borehole, 4 to 6 at the surface.
   AxisHeader direction(std::string& name) {
     const std::string dir = find("Dir.").text, station = find("Station Code").text;
     constexpr double kNorth = 0, kEast = 90, kUp = -1;
@@ -151,7 +153,7 @@ class KnetReader {
       if (known.azimuth_deg != kUp) header.azimuth_deg = known.azimuth_deg;
       return header;
     }
-    if (!problems_.any()) complain("Dir.", "is none of N-S, E-W, U-D, 1 to 6");
+    if (!problems_.any()) complain("Dir.", "must be N-S, E-W, U-D or 1 to 6");
     return {};
   }
 

@@ -1,8 +1,12 @@
+// miniSEED 2, the format of seismic networks.
 #include <libmseed.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -13,15 +17,164 @@
 
 #include <fmt/core.h>
 
-#include "drivers/files/gzip_input.h"
+#include "drivers/files/file_problems.h"
+#include "drivers/files/packed_file.h"
+#include "drivers/records/record.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_merge.h"
-#include "drivers/stations/count_meanings.h"
-#include "drivers/stations/seed_trace.h"
 #include "drivers/stations/station_formats.h"
+#include "drivers/stations/station_xml.h"
 
 namespace framewatch::drivers {
 namespace {
+
+/// The samples of one miniSEED record.
+struct SeedPiece {
+  std::int64_t start_us = 0;  ///< time of the first sample since 1970
+  std::vector<double> values;
+};
+
+/// All samples of one SEED channel, in the order of the file.
+struct SeedTrace {
+  std::string name;
+  double rate_hz = 0;
+  std::vector<SeedPiece> pieces;
+};
+
+/// Times without blockette 1001 are rounded to this.
+constexpr double kTimeResolution_us = 100;
+constexpr double kMaxSlackSteps = 0.4;
+/// Relative error allowed for the clock over an interruption.
+constexpr double kDriftOverInterruption = 1e-4;
+constexpr std::size_t kMaxNoted = 10;
+
+std::string time_text_of(double time_us) {
+  std::array<char, 64> text{};
+  ms_hptime2isotimestr(std::llround(time_us), text.data(), 1);
+  return std::string(text.data()) + "Z";
+}
+
+/// Samples without an interruption. The start times of the first and the last piece give the step.
+struct SeedRun {
+  double start_us = 0, last_us = 0;  ///< start times of the first and the last piece
+  std::size_t last = 0;              ///< index of the first sample of the last piece
+  std::vector<double> values;
+};
+
+class TraceJoiner {
+ public:
+  TraceJoiner(const SeedTrace& trace, FileProblems& problems)
+      : name_(trace.name),
+        step_us_(1e6 / trace.rate_hz),
+        slack_steps_(
+            std::min(std::max(RecordBuilder::kStepTolerance, kTimeResolution_us / step_us_),
+                     kMaxSlackSteps)),
+        problems_(problems) {}
+
+  void add(SeedPiece piece) {
+    const auto start_us = static_cast<double>(piece.start_us);
+    if (runs_.empty()) return begin_run(start_us, std::move(piece));
+    SeedRun& run = runs_.back();
+    const double due_us =
+        run.last_us + static_cast<double>(run.values.size() - run.last) * step_us_;
+    const double off_steps = (start_us - due_us) / step_us_, whole = std::round(off_steps);
+    if (std::abs(off_steps - whole) > slack_steps_ + kDriftOverInterruption * std::abs(whole))
+      problems_.add(
+          0, fmt::format("{}: the samples from {} on are {:.2f} of a step off those before", name_,
+                         time_text_of(start_us), std::abs(off_steps - whole)));
+    else if (whole < 0)
+      add_overlapping(start_us, static_cast<std::size_t>(-whole), piece);
+    else if (whole > 0)
+      begin_run_after_interruption(due_us, start_us, std::move(piece));
+    else
+      append(run, start_us, piece, 0);
+  }
+
+  const std::vector<SeedRun>& runs() const { return runs_; }
+  double step_us() const { return step_us_; }
+
+  std::vector<std::string> notes() const {
+    std::vector<std::string> out = interruptions_;
+    if (interruption_count_ > interruptions_.size())
+      out.push_back(
+          fmt::format("{} more interruptions", interruption_count_ - interruptions_.size()));
+    if (twice_ > 0)
+      out.push_back(fmt::format("{} samples appear twice with equal values: used once", twice_));
+    return out;
+  }
+
+ private:
+  void begin_run(double start_us, SeedPiece piece) {
+    runs_.push_back({start_us, start_us, 0, std::move(piece.values)});
+  }
+
+  void begin_run_after_interruption(double due_us, double start_us, SeedPiece piece) {
+    if (interruption_count_++ < kMaxNoted)
+      interruptions_.push_back(fmt::format("an interruption of {:.6g} s from {} on",
+                                           1e-6 * (start_us - due_us), time_text_of(due_us)));
+    begin_run(start_us, std::move(piece));
+  }
+
+  static void append(SeedRun& run, double start_us, const SeedPiece& piece, std::size_t from) {
+    if (from == 0) {
+      run.last_us = start_us;
+      run.last = run.values.size();
+    }
+    run.values.insert(run.values.end(), piece.values.begin() + static_cast<std::ptrdiff_t>(from),
+                      piece.values.end());
+  }
+
+  void add_overlapping(double start_us, std::size_t overlap, const SeedPiece& piece) {
+    SeedRun& run = runs_.back();
+    const std::size_t common = std::min(overlap, piece.values.size());
+    const auto alike = [](double a, double b) {
+      return a == b || (std::isnan(a) && std::isnan(b));
+    };
+    if (overlap > run.values.size() ||
+        !std::equal(piece.values.begin(),
+                    piece.values.begin() + static_cast<std::ptrdiff_t>(common),
+                    run.values.end() - static_cast<std::ptrdiff_t>(overlap), alike)) {
+      problems_.add(0, fmt::format("{}: {} samples from {} on appear twice, with different values",
+                                   name_, common, time_text_of(start_us)));
+      return;
+    }
+    twice_ += common;
+    append(run, start_us, piece, common);
+  }
+
+  const std::string& name_;
+  double step_us_, slack_steps_;
+  FileProblems& problems_;
+  std::vector<SeedRun> runs_;
+  std::vector<std::string> interruptions_;
+  std::size_t interruption_count_ = 0, twice_ = 0;
+};
+
+/// Makes a record of a trace: sorts its pieces by time and joins them. Fills interruptions with NaN
+/// and takes samples that appear twice with equal values once; notes both. `unit_mps2` is the m/s^2
+/// of one count. Returns nullopt with a problem in two cases. Samples appear twice with different
+/// values. A piece is off the steps of the others by more than a tenth of a step and by more than
+/// 100 us, to which SEED may round times.
+std::optional<Record> record_of_trace(SeedTrace trace, double unit_mps2, FileProblems& problems) {
+  std::stable_sort(trace.pieces.begin(), trace.pieces.end(),
+                   [](const SeedPiece& a, const SeedPiece& b) { return a.start_us < b.start_us; });
+  TraceJoiner joiner(trace, problems);
+  for (SeedPiece& piece : trace.pieces)
+    if (!problems.full()) joiner.add(std::move(piece));
+  if (problems.any()) return std::nullopt;
+  RecordBuilder builder({trace.name}, problems);
+  builder.expect(trace.rate_hz, 0);
+  for (const SeedRun& run : joiner.runs()) {
+    const double step_us = run.last > 0
+                               ? (run.last_us - run.start_us) / static_cast<double>(run.last)
+                               : joiner.step_us();
+    for (std::size_t i = 0; i < run.values.size(); ++i) {
+      const double accel_mps2 = run.values[i] * unit_mps2;
+      builder.add(0, (run.start_us + static_cast<double>(i) * step_us) / 1e6, {&accel_mps2, 1});
+    }
+  }
+  for (const std::string& note : joiner.notes()) builder.note(note);
+  return builder.finish();
+}
 
 constexpr double kMinRate_hz = 1e-4, kSameRate = 1e-3;
 
@@ -32,7 +185,7 @@ using SeedRecord = std::unique_ptr<MSRecord, FreeSeedRecord>;
 
 void say_nothing(char* /*text*/) {}
 
-/// A code of a channel's name, without the blanks that fill it.
+/// Returns a part of a channel's name without the blanks that pad it.
 std::string seed_code(const char* code) {
   std::string out;
   for (const char c : std::string_view(code))
@@ -45,7 +198,7 @@ std::string seed_name(const MSRecord& record) {
                      seed_code(record.location), seed_code(record.channel));
 }
 
-/// The samples of a record as numbers; false where they are none.
+/// Copies the samples of a record to `values`. Returns false when they are not numbers.
 bool seed_values(const MSRecord& record, std::vector<double>& values) {
   const auto copy = [&](const auto* from) {
     values.assign(from, from + record.numsamples);
@@ -63,7 +216,7 @@ bool seed_values(const MSRecord& record, std::vector<double>& values) {
   }
 }
 
-/// Reads a file record after record, in bounded memory.
+/// Reads a file record by record in bounded memory.
 class SeedRecords {
  public:
   explicit SeedRecords(FileProblems& problems) : problems_(problems), file_(problems.path()) {
@@ -71,7 +224,7 @@ class SeedRecords {
     if (!file_.is_open()) problems_.add(0, file_.error());
   }
 
-  /// Null at the end, and when there is a problem.
+  /// Returns the next record. Returns null at the end, and when there is a problem.
   SeedRecord next() {
     if (!file_.is_open() || !fill() || at_ == buffer_.size()) return nullptr;
     char* const begin = buffer_.data() + at_;
@@ -87,13 +240,13 @@ class SeedRecords {
     return record;
   }
 
-  /// Of what next() reads next.
+  /// Returns the byte offset of the record that next() reads next.
   std::int64_t offset() const {
     return read_ - std::ssize(buffer_) + static_cast<std::int64_t>(at_);
   }
 
  private:
-  /// Room for the longest record, and for the header behind it.
+  /// Bytes of the longest record and the header behind it.
   static constexpr std::int64_t kAhead = std::int64_t{MAXRECLEN} + 64;
 
   bool fill() {
@@ -116,7 +269,7 @@ class SeedRecords {
       case MS_NOTSEED:
         return "no miniSEED record is here";
       case MS_UNKNOWNFORMAT:
-        return "samples in an encoding that is not read";
+        return "samples in an unsupported encoding";
       default:
         return fmt::format("a damaged record ({})", code > 0 ? "its length" : ms_errorstr(code));
     }
@@ -153,8 +306,8 @@ std::optional<SeedContents> read_traces(const RecordOptions& options, FileProble
       continue;
     }
     if (!(record->samprate > kMinRate_hz && record->samprate <= RecordBuilder::kMaxRateHz))
-      problems.add(0, fmt::format("{}: {:g} Hz is no rate, in the record before byte {}", name,
-                                  record->samprate, records.offset()));
+      problems.add(0, fmt::format("{}: {:g} Hz is not a valid rate, in the record before byte {}",
+                                  name, record->samprate, records.offset()));
     count += piece.values.size();
     if (count > RecordBuilder::kMaxValues)
       problems.add(0, fmt::format("a record holds at most {} values", RecordBuilder::kMaxValues));
@@ -182,14 +335,14 @@ std::optional<SeedContents> read_traces(const RecordOptions& options, FileProble
   return out;
 }
 
-/// Channels of different rates, or so far apart in time that a table of them would be empty for the
-/// most part.
+/// Reports channels of different rates, and channels so far apart in time that most of a table of
+/// them would be empty.
 void check_together(const SeedContents& contents, FileProblems& problems) {
   const SeedTrace& first = contents.traces.begin()->second;
   std::int64_t begin_us = INT64_MAX, end_us = INT64_MIN;
   for (const auto& [name, trace] : contents.traces) {
     if (std::abs(trace.rate_hz / first.rate_hz - 1) > kSameRate)
-      problems.add(0, fmt::format("{} has {:g} Hz, {} has {:g} Hz: take those of one rate with "
+      problems.add(0, fmt::format("{} has {:g} Hz, {} has {:g} Hz: select those of one rate with "
                                   "--columns",
                                   first.name, first.rate_hz, name, trace.rate_hz));
     for (const SeedPiece& piece : trace.pieces) {
@@ -201,8 +354,8 @@ void check_together(const SeedContents& contents, FileProblems& problems) {
   if (instants * static_cast<double>(contents.traces.size()) >
       static_cast<double>(RecordBuilder::kMaxValues))
     problems.add(
-        0, fmt::format("the channels span {:.6g} s, which with what is missing is more "
-                       "than {} values: take fewer with --columns, or cut the file",
+        0, fmt::format("the channels span {:.6g} s, more than {} values with missing samples "
+                       "filled in: select fewer with --columns, or cut the file",
                        1e-6 * static_cast<double>(end_us - begin_us), RecordBuilder::kMaxValues));
 }
 
@@ -225,7 +378,7 @@ std::optional<Record> read_mseed(const RecordOptions& options, FileProblems& pro
   for (auto& [name, trace] : contents->traces) {
     const auto meaning =
         meanings->of(name, 1e-6 * static_cast<double>(first_us(trace)), trace.rate_hz, problems);
-    if (!meaning) continue;  // every channel's problem is told
+    if (!meaning) continue;  // go on, to report the problems of all channels
     auto record = record_of_trace(std::move(trace), meaning->unit_mps2, problems);
     if (!record) return std::nullopt;
     if (!meaning->note.empty()) record->headers = {meaning->header};

@@ -6,8 +6,8 @@
 
 #include "drivers/files/line_reader.h"
 #include "drivers/files/number_text.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
+#include "drivers/records/unit_text.h"
 #include "drivers/stations/fortran_numbers.h"
 #include "drivers/stations/station_channel.h"
 #include "drivers/stations/station_formats.h"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kSmcTextLines = 11;
 
-/// Where the headers have what is read of them, from 0.
+/// Places in the headers of the values that are read, counted from 0.
 enum class SmcInteger : std::size_t {
   undefined = 0,
   year = 1,
@@ -49,7 +49,7 @@ struct SmcHeader {
   }
 };
 
-/// A corrected or an uncorrected one; velocities and displacements begin otherwise.
+/// Returns true for a corrected and false for an uncorrected accelerogram.
 bool is_corrected(const SmcHeader& header) {
   return trimmed(header.text[0]).front() == '2';
 }
@@ -77,8 +77,8 @@ AxisHeader axis_header(const SmcHeader& header) {
 
 std::string treatment_text(const SmcHeader& header) {
   std::string text = is_corrected(header) ? "corrected" : "uncorrected";
-  if (header.integer(SmcInteger::problem) == 1) text += "; its network says it has a fault";
-  return text + "; not used of the header: coordinates, event, the sensor's own frequency";
+  if (header.integer(SmcInteger::problem) == 1) text += "; the network reports a fault";
+  return text + "; not used from the header: coordinates, event, the sensor's natural frequency";
 }
 
 std::optional<double> start_of(const SmcHeader& header, FileProblems& problems) {
@@ -89,7 +89,7 @@ std::optional<double> start_of(const SmcHeader& header, FileProblems& problems) 
   const int millisecond = header.integer(SmcInteger::millisecond).value_or(0);
   const auto utc_s =
       utc_of(utc_of_day_of_year(*year, *day), *hour, *minute, *second + 1e-3 * millisecond);
-  if (!utc_s) problems.add(kSmcTextLines + 1, "SMC: the header's start is no time");
+  if (!utc_s) problems.add(kSmcTextLines + 1, "SMC: the header's start is not a valid time");
   return utc_s;
 }
 
@@ -98,7 +98,7 @@ std::optional<SmcHeader> read_smc_header(LineReader& lines, FileProblems& proble
   std::string_view line;
   while (lines.number() < kSmcTextLines && lines.next(line)) header.text.emplace_back(line);
   if (lines.number() < kSmcTextLines) {
-    if (!problems.any()) problems.add(0, "SMC: the 11 lines of text are not all there");
+    if (!problems.any()) problems.add(0, "SMC: the file has fewer than 11 lines of text");
     return std::nullopt;
   }
   if (!is_smc_title(header.text[0])) {
@@ -115,11 +115,12 @@ std::optional<SmcHeader> read_smc_header(LineReader& lines, FileProblems& proble
   if (!reals) return std::nullopt;
   header.rate_hz = (*reals)[kSmcRate_hz];
   if (!(header.rate_hz > 0) || header.rate_hz > RecordBuilder::kMaxRateHz)
-    problems.add(kSmcTextLines + 7, fmt::format("SMC: {:g} samples a second", header.rate_hz));
+    problems.add(kSmcTextLines + 7,
+                 fmt::format("SMC: {:g} samples per second is not a valid rate", header.rate_hz));
   const int comments = header.integer(SmcInteger::comments).value_or(0);
   for (int i = 0; i < comments && !problems.any(); ++i)
     if (!lines.next(line) || line.empty() || line.front() != '|')
-      problems.add(lines.number(), fmt::format("SMC: {} of {} comment lines", i, comments));
+      problems.add(lines.number(), fmt::format("SMC: only {} of {} comment lines", i, comments));
   return header;
 }
 

@@ -21,7 +21,7 @@ std::optional<double> seconds_of(std::chrono::year_month_day date) {
 }
 
 std::string start_text(double utc_s) {
-  utc_s += 0.0005;  // rounded, not cut, to the millisecond
+  utc_s += 0.0005;  // round to the millisecond, do not truncate
   const double whole_s = std::floor(utc_s);
   return fmt::format("begins {:%Y-%m-%dT%H:%M:%S}.{:03}Z",
                      fmt::gmtime(static_cast<std::time_t>(whole_s)),
@@ -57,7 +57,8 @@ std::optional<Record> station_record(const StationChannel& channel,
                                      std::size_t per_line, FileProblems& problems) {
   check_names({channel.name}, 0, problems);
   if (channel.start_utc_s && !(std::abs(*channel.start_utc_s) < RecordBuilder::kMaxTimeS))
-    problems.add(0, fmt::format("it begins at {:g} s", *channel.start_utc_s));
+    problems.add(0,
+                 fmt::format("it begins at {:g} s, which is out of range", *channel.start_utc_s));
   if (problems.any()) return std::nullopt;
   RecordBuilder builder({channel.name}, problems);
   builder.expect(1 / channel.step_s, 0);
@@ -80,7 +81,7 @@ std::optional<Record> station_record(const StationChannel& channel,
                              std::abs(*channel.peak_mps2), peak_mps2));
   auto record = builder.finish();
   if (record) {
-    record->rate_hz = 1 / channel.step_s;  // its times are rounded
+    record->rate_hz = 1 / channel.step_s;  // more exact than the step between rounded times
     record->headers = {channel.header};
   }
   return record;

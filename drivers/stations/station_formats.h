@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -7,20 +8,32 @@
 #include "drivers/records/record.h"
 #include "drivers/records/record_options.h"
 
-// The readers of what networks of stations publish, one file each. All of them report to `problems`
-// and return nothing when there is a problem.
+// Readers of the formats of strong-motion networks, one file each. Each reads the file
+// problems.path() and returns nullopt with its problems when the file breaks a rule of its format.
 namespace framewatch::drivers {
 
-/// miniSEED 2: every SEED channel is one of the record, with its own name; `unit_mps2` is of a
-/// count. Times are since 1970. Channels begin and end when they do: NaN where one has no sample.
+/// Reads miniSEED 2. Every SEED channel becomes a channel of the same name; `unit_mps2` is the
+/// m/s^2 of a count. Times are since 1970. Instants before the first and after the last sample of a
+/// channel are NaN.
 std::optional<Record> read_mseed(const RecordOptions& options, FileProblems& problems);
-/// Of the options only the zone, where the file does not say it.
+
+/// Reads COSMOS. Uses only the zone of the options, when the file does not state it.
 std::optional<Record> read_cosmos(const RecordOptions& options, FileProblems& problems);
-/// Whether a file of that first line is an accelerogram; others hold velocities, displacements.
+
+/// Returns true if this first line begins an SMC file of accelerations; SMC files can also hold
+/// velocities and displacements.
 bool is_smc_title(std::string_view first_line);
+/// Reads SMC of the U.S. Geological Survey.
 std::optional<Record> read_smc(FileProblems& problems);
+
+/// Reads K-NET and KiK-net.
 std::optional<Record> read_knet(FileProblems& problems);
-/// One channel; `unit_mps2` is of one of the file's, since few files say theirs as they should.
+
+constexpr std::size_t kSacHeaderBytes = 632;
+/// Returns true if the first kSacHeaderBytes of a file are the header of a SAC file.
+bool is_sac_header(std::string_view bytes);
+/// Reads one channel of SAC. `unit_mps2` is the m/s^2 of one value: few SAC files state their unit
+/// reliably.
 std::optional<Record> read_sac(const RecordOptions& options, FileProblems& problems);
 
 }  // namespace framewatch::drivers

@@ -45,7 +45,7 @@ bool is_one(const std::array<std::string_view, N>& words, std::string_view word)
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Runs of letters and digits, lower case; "7th" is one.
+/// Returns the runs of letters and digits in lower case; "7th" is one of them.
 Words words_of(const std::string& text) {
   Words out;
   bool inside = false;
@@ -65,7 +65,8 @@ std::optional<int> floor_number(std::string_view digits) {
                                                        : std::nullopt;
 }
 
-/// "7th", "3f", "level 3", "fl. 3": the number of the floor that a word, or it and the next, says.
+/// Returns the floor that a word, alone or with the next one, names: "7th", "3f", "level 3", "fl.
+/// 3".
 std::optional<int> floor_at(const Words& words, std::size_t i) {
   const std::string_view word = words[i];
   const std::string_view ending =
@@ -118,7 +119,7 @@ Side side_of(const AxisHeader& header) {
       if (word != known.letters && word != known.word) continue;
       const bool twice =
           (out.east != 0 && known.side.east != 0) || (out.north != 0 && known.side.north != 0);
-      if (twice) return {};  // "from N to S": no one side
+      if (twice) return {};  // "from N to S" is not one side
       out.east += known.side.east;
       out.north += known.side.north;
     }
@@ -139,7 +140,7 @@ std::string level_text(const Level& level) {
     case LevelKind::unknown:
       break;
   }
-  return "a level that is not said";
+  return "an unknown level";
 }
 
 }  // namespace framewatch::drivers

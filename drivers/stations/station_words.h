@@ -2,16 +2,16 @@
 
 #include <string>
 
-#include "drivers/records/axis_header.h"
+#include "drivers/records/record.h"
 
 namespace framewatch::drivers {
 
-/// On which level of a building an instrument is, as networks say it.
+/// The level of a building on which an instrument is, as networks describe it.
 enum class LevelKind {
   unknown,
   outside,   ///< free field, borehole: not in the building
-  basement,  ///< any below the ground's floor
-  floor,     ///< `number` counts as networks do: 1 is at the ground
+  basement,  ///< any level below the ground floor
+  floor,     ///< `number` counts as networks do: 1 is the ground floor
   roof,
 };
 
@@ -21,19 +21,20 @@ struct Level {
   bool operator==(const Level&) const = default;
 };
 
-/// Where on its floor: -1, 0 or 1 toward east and toward north.
+/// The side of its floor on which an instrument is: -1, 0 or 1 toward east and toward north.
 struct Side {
   int east = 0, north = 0;
   bool operator==(const Side&) const = default;
 };
 
-/// "7th fl E side", "Roof", "Basement NW corner", "Ground floor", "DH array 4.6m", "3F"; a number
-/// in the header's field counts where the words say nothing.
+/// Returns the level that header.place names: "7th fl E side", "Roof", "Basement NW corner",
+/// "Ground floor", "DH array 4.6m", "3F". Falls back on header.floor; unknown when neither says it.
 Level level_of(const AxisHeader& header);
-/// "NW corner", "E side", "south wall".
+/// Returns the side that header.place names: "NW corner", "E side", "south wall"; 0, 0 when
+/// unknown.
 Side side_of(const AxisHeader& header);
 
-/// "floor 7", "roof", "basement", "outside".
+/// Returns a level for messages: "floor 7", "roof", "basement", "outside the building".
 std::string level_text(const Level& level);
 
 }  // namespace framewatch::drivers

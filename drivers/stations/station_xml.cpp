@@ -1,4 +1,4 @@
-// FDSN StationXML, as far as a record of accelerations needs it.
+// FDSN StationXML: the parts that a record of accelerations needs.
 // https://docs.fdsn.org/projects/stationxml
 #include "drivers/stations/station_xml.h"
 
@@ -12,10 +12,9 @@
 
 #include <fmt/core.h>
 
-#include "drivers/files/gzip_input.h"
 #include "drivers/files/number_text.h"
-#include "drivers/records/accel_unit.h"
-#include "drivers/records/time_text.h"
+#include "drivers/files/packed_file.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -23,13 +22,13 @@ namespace {
 constexpr std::int64_t kMaxBytes = std::int64_t{64} << 20;
 constexpr std::size_t kDeepest = 32, kMaxChannels = 100'000, kLongestText = 1000;
 
-/// Without the prefix of its namespace.
+/// Returns a name without the prefix of its namespace.
 std::string_view local_name(std::string_view name) {
   return name.substr(name.find(':') + 1);
 }
 
-/// "Channel/Response/InstrumentSensitivity/Value" within a channel, from the elements that are
-/// open.
+/// Collects channels while expat walks through the elements; open_ holds the path to the current
+/// one.
 class StationXmlReader {
  public:
   explicit StationXmlReader(FileProblems& problems)
@@ -65,8 +64,8 @@ class StationXmlReader {
       if (XML_Parse(parser_.get(), bytes.data(), static_cast<int>(got), ended) ==
               XML_STATUS_ERROR &&
           !problems_.any())
-        problems_.add(
-            line(), fmt::format("is no XML: {}", XML_ErrorString(XML_GetErrorCode(parser_.get()))));
+        problems_.add(line(), fmt::format("is not XML: {}",
+                                          XML_ErrorString(XML_GetErrorCode(parser_.get()))));
     }
     if (!problems_.any() && channels_.empty()) problems_.add(0, "has no channel");
     return std::move(channels_);
@@ -78,7 +77,7 @@ class StationXmlReader {
   };
 
   std::int64_t line() const {
-#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9  // which deprecates the other one
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9  // which deprecates the other function
     return static_cast<std::int64_t>(XML_GetCurrentLineNumber64(parser_.get()));
 #else
     return static_cast<std::int64_t>(XML_GetCurrentLineNumber(parser_.get()));
@@ -87,7 +86,7 @@ class StationXmlReader {
 
   void stop(const std::string& why) {
     problems_.add(line(), why);
-    stopped_ = true;  // some handlers are still called
+    stopped_ = true;  // expat still calls some handlers
     XML_StopParser(parser_.get(), XML_FALSE);
   }
 
@@ -95,8 +94,8 @@ class StationXmlReader {
     if (stopped_) return;
     text_.clear();
     if (open_.empty() && name != "FDSNStationXML")
-      return stop(fmt::format("is no StationXML: its root is {}", show_text(name)));
-    if (open_.size() >= kDeepest) return stop(fmt::format("is nested over {} deep", kDeepest));
+      return stop(fmt::format("is not StationXML: its root element is {}", show_text(name)));
+    if (open_.size() >= kDeepest) return stop(fmt::format("is nested more than {} deep", kDeepest));
     open_.emplace_back(name.substr(0, kLongestText));
     const auto attribute = [&](std::string_view wanted) -> std::string {
       for (const char** a = attributes; *a != nullptr; a += 2)
@@ -107,7 +106,7 @@ class StationXmlReader {
     if (is_at({"Network", "Station"})) station_ = attribute("code");
     if (!is_at({"Network", "Station", "Channel"})) return;
     if (channels_.size() >= kMaxChannels)
-      return stop(fmt::format("has over {} channels", kMaxChannels));
+      return stop(fmt::format("has more than {} channels", kMaxChannels));
     StationXmlChannel& channel = channels_.emplace_back();
     channel.line = line();
     channel.name = fmt::format("{}.{}.{}.{}", trimmed(network_), trimmed(station_),
@@ -127,7 +126,7 @@ class StationXmlReader {
     open_.pop_back();
   }
 
-  /// What an element below a channel says.
+  /// Takes the text of an element below a channel.
   void take_element(const std::string& text) {
     if (open_.size() <= 4 || !begins_with_channel()) return;
     StationXmlChannel& channel = channels_.back();
@@ -152,16 +151,17 @@ class StationXmlReader {
                                double most) {
     const auto value = parse_number(text);
     if (value && *value >= least && *value <= most) return value;
-    problems_.add(line(), fmt::format("{} {} is no number from {:g} to {:g}", what, show_text(text),
-                                      least, most));
+    problems_.add(line(), fmt::format("{} {} is not a number from {:g} to {:g}", what,
+                                      show_text(text), least, most));
     return std::nullopt;
   }
 
-  /// "2018-11-30T00:00:00.0000Z"; without a zone it is UTC. Empty for what is not there.
+  /// Parses a time such as "2018-11-30T00:00:00.0000Z", in UTC when it has no zone. Returns nullopt
+  /// for an empty text, and with a problem for an invalid one.
   std::optional<double> time_of(const std::string& text) {
     if (text.empty()) return std::nullopt;
     const auto stamp = parse_time_stamp(text);
-    if (!stamp) problems_.add(line(), fmt::format("{} is no time", show_text(text)));
+    if (!stamp) problems_.add(line(), fmt::format("{} is not a time", show_text(text)));
     if (!stamp) return std::nullopt;
     return stamp->local_s - 60.0 * stamp->offset_min.value_or(0);
   }
@@ -188,10 +188,23 @@ class StationXmlReader {
   FileProblems& problems_;
   std::unique_ptr<XML_ParserStruct, FreeParser> parser_;
   bool stopped_ = false;
-  std::vector<std::string> open_;  ///< names of the elements that are, the root first
+  std::vector<std::string> open_;  ///< names of the open elements, the root first
   std::string text_, network_, station_;
   std::vector<StationXmlChannel> channels_;
 };
+
+constexpr double kSameRateRatio = 1e-3;
+
+std::string note_of(const StationXmlChannel& channel, double unit_mps2, double rate_hz,
+                    const std::string& path) {
+  const AxisHeader& header = channel.header;
+  std::string out = fmt::format("{}: {}{}{}, {:.6g} m/s2 per count ({}, line {})", channel.name,
+                                direction_text(header), header.place.empty() ? "" : ", ",
+                                header.place, unit_mps2, path, channel.line);
+  if (channel.rate_hz && std::abs(*channel.rate_hz / rate_hz - 1) > kSameRateRatio)
+    out += fmt::format("; StationXML says {:g} Hz, the record {:g} Hz", *channel.rate_hz, rate_hz);
+  return out + "; not used: the response's stages, elevation, depth";
+}
 
 }  // namespace
 
@@ -231,10 +244,40 @@ std::optional<double> mps2_per_count(const StationXmlChannel& channel, std::stri
   if (!channel.sensitivity || *channel.sensitivity == 0)
     why = fmt::format("{} has no InstrumentSensitivity", channel.name);
   else if (!unit_mps2)
-    why = fmt::format("{} measures {}, no acceleration that is known", channel.name,
+    why = fmt::format("{} measures {}, which is not a known unit of acceleration", channel.name,
                       show_text(channel.input_unit));
   else
     return *unit_mps2 / *channel.sensitivity;
+  return std::nullopt;
+}
+
+std::optional<CountMeanings> CountMeanings::read(const RecordOptions& options,
+                                                 FileProblems& problems) {
+  CountMeanings out;
+  out.declared_mps2_ = options.unit_mps2;
+  out.path_ = options.station_xml;
+  if (out.path_.empty()) return out;
+  std::vector<Problem> found;
+  auto channels = read_station_xml(out.path_, found);
+  for (const Problem& p : found) problems.add(0, fmt::format("{}: {}", p.where, p.message));
+  if (!channels) return std::nullopt;
+  out.channels_ = std::move(*channels);
+  return out;
+}
+
+std::optional<CountMeaning> CountMeanings::of(const std::string& name,
+                                              std::optional<double> start_utc_s, double rate_hz,
+                                              FileProblems& problems) const {
+  if (path_.empty()) return CountMeaning{declared_mps2_.value_or(1), {}, ""};
+  std::string why;
+  const StationXmlChannel* channel =
+      start_utc_s ? channel_at(channels_, name, *start_utc_s, why) : nullptr;
+  if (!start_utc_s) why = "the record has no time, so its epoch of " + name + " is unknown";
+  const auto unit_mps2 = channel != nullptr ? mps2_per_count(*channel, why) : std::nullopt;
+  if (unit_mps2)
+    return CountMeaning{*unit_mps2, channel->header, note_of(*channel, *unit_mps2, rate_hz, path_)};
+  problems.add(0, channel != nullptr ? fmt::format("{}:{}: {}", path_, channel->line, why)
+                                     : fmt::format("{}: {}", path_, why));
   return std::nullopt;
 }
 

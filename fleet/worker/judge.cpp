@@ -10,7 +10,6 @@
 #include "daemon/base/clocks.h"
 #include "drivers/files/number_text.h"
 #include "drivers/lcm/message_check.h"
-#include "drivers/lcm/message_types.h"
 #include "fleet/message/key.h"
 #include "fleet/message/subject.h"
 

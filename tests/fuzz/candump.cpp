@@ -1,6 +1,5 @@
 // A log of `candump -l`.
 #include "drivers/can/can_log.h"
-#include "drivers/can/candump_line.h"
 #include "tests/fuzz/targets.h"
 
 namespace framewatch::test {

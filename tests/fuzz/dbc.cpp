@@ -1,7 +1,6 @@
 // A DBC file, and numbers in frames as it says.
 #include <array>
 
-#include "drivers/can/can_field.h"
 #include "drivers/can/can_frame.h"
 #include "drivers/dbc/dbc.h"
 #include "tests/fuzz/targets.h"

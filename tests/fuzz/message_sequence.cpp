@@ -6,7 +6,7 @@
 #include <framewatch/message_layouts.hpp>
 
 #include "drivers/files/encoded.h"
-#include "drivers/lcm/message_types.h"
+#include "drivers/lcm/message_check.h"
 #include "tests/drivers/lcm/example_messages.h"
 
 namespace framewatch::test {

@@ -8,9 +8,7 @@
 #include "daemon/page/view/page_json.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
-#include "drivers/lcm/channel_table.h"
 #include "drivers/lcm/message_check.h"
-#include "drivers/lcm/message_types.h"
 #include "tests/drivers/lcm/example_messages.h"
 #include "tests/fuzz/targets.h"
 

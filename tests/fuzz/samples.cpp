@@ -5,7 +5,7 @@
 #include "daemon/monitor/estimation/estimation.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
-#include "drivers/lcm/message_types.h"
+#include "drivers/lcm/message_check.h"
 #include "tests/fuzz/example_building.h"
 #include "tests/fuzz/message_sequence.h"
 #include "tests/fuzz/shaken.h"

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include "drivers/lcm/intake_settings.h"
-#include "drivers/lcm/lcm_reception.h"
+#include "drivers/lcm/lcm_settings.h"
 
 namespace framewatch::daemon {
 

@@ -16,9 +16,7 @@
 #include "drivers/files/standard_streams.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/lcm_provider.h"
-#include "drivers/lcm/log_events.h"
 #include "drivers/lcm/message_check.h"
-#include "drivers/lcm/message_types.h"
 
 namespace framewatch::daemon {
 namespace {

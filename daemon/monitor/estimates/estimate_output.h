@@ -9,7 +9,7 @@
 
 #include "daemon/config/config.h"
 #include "drivers/files/partial_file.h"
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/files/text_output.h"
 #include "drivers/records/record.h"
 

@@ -11,7 +11,7 @@
 #include <framewatch/status_t.hpp>
 #include <framewatch/watch_t.hpp>
 
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/records/record.h"
 #include "estimator/identify/estimate/estimate.h"
 

@@ -27,7 +27,7 @@
 #include "drivers/files/durable_file.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/partial_file.h"
-#include "drivers/files/zstd_file.h"
+#include "drivers/files/packed_file.h"
 #include "drivers/lcm/count_block.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/lcm/accel_messages.h"
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_log.h"
 
 namespace framewatch::daemon {

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/lcm/channel_table.h"
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/count_block.h"
 #include "drivers/lcm/message_check.h"
 

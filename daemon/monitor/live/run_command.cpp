@@ -32,7 +32,7 @@
 #include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/monitor/service/start_count.h"
-#include "drivers/files/cut_off_file.h"
+#include "drivers/files/partial_file.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/input_file.h"
 

@@ -19,9 +19,9 @@
 #include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/records/plausibility.h"
+#include "drivers/records/record.h"
+#include "drivers/records/record_builder.h"
 #include "drivers/records/record_csv_writer.h"
-#include "drivers/records/record_merge.h"
 #include "estimator/motion/svd_denoise.h"
 
 namespace framewatch::daemon {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "daemon/tools/init/place.h"
-#include "drivers/records/axis_header.h"
+#include "drivers/records/record.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {

@@ -14,8 +14,8 @@
 #include "drivers/files/input_file.h"
 #include "drivers/files/number_text.h"
 #include "drivers/formats/record_file.h"
-#include "drivers/records/accel_unit.h"
-#include "drivers/records/record_merge.h"
+#include "drivers/records/record_builder.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::daemon {
 namespace {

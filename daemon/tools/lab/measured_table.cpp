@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "drivers/formats/record_file.h"
-#include "drivers/records/record_merge.h"
+#include "drivers/records/record_builder.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <framewatch/accel_counts_t.hpp>
 
-#include "drivers/lcm/channel_table.h"
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/count_block.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/numeric/nan.h"

@@ -19,7 +19,6 @@
 #include "drivers/files/input_file.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
-#include "drivers/lcm/message_types.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -12,7 +12,7 @@
 #include "drivers/can/can_log.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/standard_streams.h"
-#include "drivers/lcm/message_types.h"
+#include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -9,7 +9,6 @@
 #include "daemon/tools/replay/replay_survey.h"
 #include "drivers/lcm/count_block.h"
 #include "drivers/lcm/message_check.h"
-#include "drivers/lcm/message_types.h"
 
 namespace framewatch::daemon {
 namespace {

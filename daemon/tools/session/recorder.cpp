@@ -11,7 +11,7 @@
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/publisher.h"
 #include "daemon/monitor/live/live_intake.h"
-#include "drivers/can/candump_line.h"
+#include "drivers/can/can_log.h"
 #include "drivers/files/text_output.h"
 
 namespace framewatch::daemon {

@@ -13,8 +13,7 @@
 #include "drivers/files/input_file.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/accel_log.h"
-#include "drivers/lcm/channel_table.h"
-#include "drivers/lcm/log_events.h"
+#include "drivers/lcm/lcm_log.h"
 #include "drivers/records/record_csv_writer.h"
 
 namespace framewatch::daemon {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "drivers/formats/record_file.h"
-#include "drivers/records/accel_unit.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::daemon {
 namespace {

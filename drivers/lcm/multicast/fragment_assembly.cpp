@@ -5,7 +5,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::size_t kPartOverhead = 128;  // what keeping a part of one byte costs
+constexpr std::size_t kPartOverhead = 128;  // memory for a part of one byte
 
 }  // namespace
 
@@ -19,12 +19,13 @@ void FragmentAssembly::remove(Entry entry) {
   messages_.erase(entry);
 }
 
-void FragmentAssembly::give_up(Entry entry) {
+void FragmentAssembly::discard(Entry entry) {
   unfinished_ += entry->unwanted ? 0 : 1;
   remove(entry);
 }
 
-/// The sender's unfinished message, begun anew when the packet is of another one.
+/// Returns the sender's unfinished message, or a new one when the packet belongs to another
+/// message.
 FragmentAssembly::Entry FragmentAssembly::entry_of(const LcmSender& sender,
                                                    const LcmPacket& packet) {
   const auto known = by_sender_.find(sender);
@@ -35,9 +36,9 @@ FragmentAssembly::Entry FragmentAssembly::entry_of(const LcmSender& sender,
       messages_.splice(messages_.end(), messages_, entry);
       return entry;
     }
-    give_up(entry);
+    discard(entry);
   }
-  if (messages_.size() == kMaxSenders) give_up(messages_.begin());
+  if (messages_.size() == kMaxSenders) discard(messages_.begin());
   messages_.emplace_back();
   const Entry entry = std::prev(messages_.end());
   entry->sender = sender;
@@ -54,7 +55,7 @@ void FragmentAssembly::ignore(Unfinished& message) {
   message.unwanted = true;
 }
 
-/// False when there are more bytes than the message has.
+/// Keeps a part. Returns false when the parts have more bytes than the message.
 bool FragmentAssembly::keep(Unfinished& message, const LcmPacket& packet) {
   if (packet.payload.size() > message.message_bytes - message.payload_bytes) return false;
   message.kept[packet.part] = {packet.offset, {packet.payload.begin(), packet.payload.end()}};
@@ -63,7 +64,7 @@ bool FragmentAssembly::keep(Unfinished& message, const LcmPacket& packet) {
   return true;
 }
 
-/// Whether the parts lie one behind the other from beginning to end.
+/// Joins the parts. Returns false unless they follow each other from beginning to end.
 bool FragmentAssembly::join(const Unfinished& message, std::vector<std::uint8_t>& payload) const {
   payload.clear();
   payload.reserve(message.payload_bytes);
@@ -96,12 +97,12 @@ FragmentAssembly::Outcome FragmentAssembly::add(const LcmSender& sender, const L
     if (!wanted_(packet.channel)) ignore(*entry);
   }
   if (!entry->unwanted && !keep(*entry, packet)) {
-    give_up(entry);
+    discard(entry);
     return Outcome::refused;
   }
   if (++entry->parts_came == entry->parts) return finish(entry, channel, payload);
   const bool unwanted = entry->unwanted;
-  while (bytes_ > kMaxBytes) give_up(messages_.begin());
+  while (bytes_ > kMaxBytes) discard(messages_.begin());
   return unwanted ? Outcome::unwanted : Outcome::waits;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 namespace framewatch::drivers {
 namespace {
 
@@ -14,7 +16,8 @@ std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
   return value;
 }
 
-/// Takes the channel's name and its NUL off `rest`; false when there is no such name.
+/// Removes the name of the channel and its NUL from `rest`. Returns false when there is no valid
+/// name.
 bool take_channel(std::span<const std::uint8_t>& rest, std::string_view& channel) {
   const auto end = std::find(rest.begin(), rest.end(), 0);
   const auto length = static_cast<std::size_t>(end - rest.begin());
@@ -58,6 +61,11 @@ std::optional<LcmPacket> parse_lcm_packet(std::span<const std::uint8_t> datagram
   if (magic == kShort) return whole_message(datagram);
   if (magic == kPart) return part_of_message(datagram);
   return std::nullopt;
+}
+
+std::string to_text(const LcmSender& sender) {
+  const std::uint32_t a = sender.address;
+  return fmt::format("{}.{}.{}.{}:{}", a >> 24, a >> 16 & 255, a >> 8 & 255, a & 255, sender.port);
 }
 
 }  // namespace framewatch::drivers

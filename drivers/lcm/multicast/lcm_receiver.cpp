@@ -69,7 +69,7 @@ void LcmReceiver::work() {
     bool good = false;
     try {
       good = socket_.read([this](const Datagram& d) { datagram(d); });
-    } catch (const std::exception&) {  // no memory: what was being received is lost
+    } catch (const std::exception&) {  // out of memory: the message being received is lost
     }
     failed_ = !good;
     if (!good) ::poll(&wait[1], 1, kAfterFailure_ms);

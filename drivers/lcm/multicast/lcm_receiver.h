@@ -16,7 +16,7 @@
 
 namespace framewatch::drivers {
 
-/// A message as it came over the network.
+/// A message received over the network.
 struct ReceivedMessage {
   std::string channel;
   std::vector<std::uint8_t> payload;
@@ -24,37 +24,39 @@ struct ReceivedMessage {
   LcmSender sender;
 };
 
-/// Datagrams, or messages, that were not taken, by reason.
+/// Counts datagrams and messages that were not delivered, by reason.
 struct ReceiverCounters {
-  std::int64_t from_elsewhere = 0;  ///< not of this machine and not over a named interface
-  std::int64_t malformed = 0;       ///< not LCM, or lengths that contradict each other
-  std::int64_t unfinished = 0;      ///< messages of which a part never came
+  std::int64_t from_elsewhere = 0;  ///< not from this machine and not over a chosen interface
+  std::int64_t malformed = 0;       ///< not LCM, or with contradictory lengths
+  std::int64_t unfinished = 0;      ///< messages with a missing part
   std::int64_t overflowed = 0;      ///< dropped by the kernel: the receive buffer was full
   std::int64_t queue_full = 0;      ///< messages dropped because too many waited
   bool operator==(const ReceiverCounters&) const = default;
 };
 
-/// Receives LCM's UDP multicast in a thread of its own and keeps the messages of chosen channels
-/// until they are taken. Bounded in everything: what a packet says about sizes is checked before it
-/// is believed, and each channel has a queue of that capacity.
+/// Receives LCM's UDP multicast in a separate thread and queues the messages of chosen channels
+/// until take(). Checks the sizes that packets claim and bounds all memory; each channel has a
+/// queue of limited capacity.
 class LcmReceiver {
  public:
+  /// `queue_capacity` is the number of messages of each channel that may wait.
   LcmReceiver(std::vector<std::string> channels, std::size_t queue_capacity);
   ~LcmReceiver();
   LcmReceiver(const LcmReceiver&) = delete;
   LcmReceiver& operator=(const LcmReceiver&) = delete;
 
-  /// False with the reason when the group cannot be heard.
+  /// Joins the group and starts the thread. Returns false and sets `error` when that fails.
   [[nodiscard]] bool open(const MulticastGroup& group, std::string& error);
-  /// Readable while messages wait.
+  /// Returns a descriptor that is readable while messages wait.
   int descriptor() const { return waiting_.get(); }
-  /// The oldest message that waits; false when there is none. The memory of `message` is used
-  /// again.
+  /// Moves the oldest waiting message to `message` and reuses the memory of the message before.
+  /// Returns false when no message waits.
   [[nodiscard]] bool take(ReceivedMessage& message);
+  /// Returns the number of waiting messages.
   std::size_t waiting() const;
   ReceiverCounters counters() const;
   bool failed() const { return failed_; }
-  /// From now on it has failed.
+  /// Makes failed() true.
   void fail() { failed_ = true; }
 
  private:
@@ -72,10 +74,10 @@ class LcmReceiver {
   std::vector<std::uint8_t> joined_payload_;
   Descriptor waiting_, stop_;
 
-  mutable std::mutex mutex_;                                ///< of all below it
-  std::map<std::string, std::size_t, std::less<>> queued_;  ///< by channel
+  mutable std::mutex mutex_;                                ///< guards the members below
+  std::map<std::string, std::size_t, std::less<>> queued_;  ///< waiting messages by channel
   std::deque<ReceivedMessage> queue_;
-  std::vector<ReceivedMessage> spare_;  ///< taken ones, for their memory
+  std::vector<ReceivedMessage> spare_;  ///< messages kept for their memory
   std::size_t queued_bytes_ = 0;
   ReceiverCounters counters_;
 

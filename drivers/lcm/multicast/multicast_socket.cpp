@@ -3,11 +3,13 @@
 #include <arpa/inet.h>
 #include <net/if.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -16,13 +18,16 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "drivers/files/descriptor.h"
+
 namespace framewatch::drivers {
 namespace {
 
 constexpr std::size_t kBatch = 32, kLongestDatagram = 65536, kControl = 256;
 constexpr int kRoute = 0;  // stands for the interface that the group's route leads to
 
-/// From /sys: if_nameindex needs a netlink socket, which the service may not open.
+/// Returns the names from /sys: if_nameindex needs a netlink socket, which the service may not
+/// open.
 std::string names_of_interfaces() {
   std::vector<std::string> names;
   std::error_code error;
@@ -33,7 +38,7 @@ std::string names_of_interfaces() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// What the kernel says about a datagram beside its bytes.
+/// Data from the kernel about a datagram.
 struct Ancillary {
   int interface = 0;
   std::int64_t received_us = 0;
@@ -66,7 +71,36 @@ bool set_option(int socket, int level, int option, int value) {
   return ::setsockopt(socket, level, option, &value, sizeof value) == 0;
 }
 
+constexpr std::int64_t kReadAgain_us = 1'000'000;
+constexpr std::uint32_t kLoopback = 127;  // 127.0.0.0/8
+constexpr std::size_t kMaxAddresses = 256;
+
 }  // namespace
+
+/// Uses ioctl: getifaddrs needs a netlink socket, which the service may not open.
+void OwnAddresses::read() {
+  std::array<ifreq, kMaxAddresses> all{};
+  ifconf request{};
+  request.ifc_len = static_cast<int>(sizeof all);
+  request.ifc_req = all.data();
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (::ioctl(socket.get(), SIOCGIFCONF, &request) != 0) return;
+  addresses_.clear();
+  const std::size_t count = static_cast<std::size_t>(request.ifc_len) / sizeof(ifreq);
+  for (std::size_t i = 0; i < count; ++i) {
+    sockaddr_in address{};
+    std::memcpy(&address, &all[i].ifr_addr, sizeof address);
+    addresses_.insert(ntohl(address.sin_addr.s_addr));
+  }
+}
+
+bool OwnAddresses::has(std::uint32_t address, std::int64_t now_us) {
+  if (address >> 24 == kLoopback || addresses_.contains(address)) return true;
+  if (std::abs(now_us - read_us_) < kReadAgain_us) return false;
+  read_us_ = now_us;
+  read();
+  return addresses_.contains(address);
+}
 
 /// Memory for one call of recvmmsg.
 struct MulticastSocket::Batch {
@@ -94,7 +128,7 @@ struct MulticastSocket::Batch {
 MulticastSocket::MulticastSocket() = default;
 MulticastSocket::~MulticastSocket() = default;
 
-/// Error number; 0: joined, now or before.
+/// Joins the group on an interface. Returns 0, also when it was joined before, or the error number.
 int MulticastSocket::join(int interface) const {
   ip_mreqn request{};
   request.imr_multiaddr.s_addr = htonl(group_.address);
@@ -139,7 +173,8 @@ bool MulticastSocket::open(const MulticastGroup& group, std::string& error) {
   for (const std::string& name : group.interfaces) {
     const unsigned interface = ::if_nametoindex(name.c_str());
     if (interface == 0) {
-      error = fmt::format("no network interface '{}': there are {}", name, names_of_interfaces());
+      error = fmt::format("no network interface '{}'; this machine has {}", name,
+                          names_of_interfaces());
       return false;
     }
     if (const int why = join(static_cast<int>(interface)); why != 0)

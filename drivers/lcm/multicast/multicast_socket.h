@@ -3,33 +3,51 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "drivers/files/descriptor.h"
-#include "drivers/lcm/multicast/lcm_sender.h"
-#include "drivers/lcm/multicast/own_addresses.h"
+#include "drivers/lcm/multicast/lcm_packet.h"
 
 namespace framewatch::drivers {
 
-/// A group, and from where its datagrams are taken.
+/// Knows the IPv4 addresses of this machine. Linux refuses packets from outside that claim one of
+/// them.
+class OwnAddresses {
+ public:
+  OwnAddresses() { read(); }
+  /// Returns true for an address of this machine. `address` is in host byte order. `now_us` is any
+  /// clock; new addresses are found within a second.
+  bool has(std::uint32_t address, std::int64_t now_us);
+
+ private:
+  void read();
+
+  std::set<std::uint32_t> addresses_;
+  std::int64_t read_us_ = 0;
+};
+
+/// A multicast group and the interfaces whose datagrams are accepted.
 struct MulticastGroup {
   std::uint32_t address = 0;  ///< host byte order
   std::uint16_t port = 0;
-  /// Datagrams that come over these are taken, whoever sent them. This machine's own are always.
+  /// Datagrams over these interfaces are accepted from any sender; those of this machine always
+  /// are.
   std::vector<std::string> interfaces{"lo"};
   int receive_buffer_bytes = 4194304;
 };
 
+/// A datagram; `bytes` belong to the socket.
 struct Datagram {
   std::span<const std::uint8_t> bytes;
   LcmSender sender;
   std::int64_t received_us = 0;  ///< host clock, by the kernel
 };
 
-/// A socket that hears one multicast group and nothing else: it is bound to the group's address, so
-/// unicast does not reach it, and joins the group on chosen interfaces only.
+/// Receives one multicast group and nothing else: the socket is bound to the address of the group,
+/// so that unicast does not reach it, and joins the group on chosen interfaces only.
 class MulticastSocket {
  public:
   MulticastSocket();
@@ -37,17 +55,18 @@ class MulticastSocket {
   MulticastSocket(const MulticastSocket&) = delete;
   MulticastSocket& operator=(const MulticastSocket&) = delete;
 
-  /// False with the reason.
+  /// Opens the socket. Returns false and sets `error` when the group cannot be joined.
   [[nodiscard]] bool open(const MulticastGroup& group, std::string& error);
   int descriptor() const { return socket_.get(); }
 
-  /// Hands over datagrams that wait, at most a batch. False when the socket failed.
+  /// Calls `take` for the waiting datagrams, at most 32. Returns false when the socket failed.
   [[nodiscard]] bool read(const std::function<void(const Datagram&)>& take);
-  /// Joins again where an interface has gone and come back, or the group's route has changed.
+  /// Joins the group again, for interfaces that came back and for changed routes. Call it every few
+  /// seconds.
   void join_again();
 
-  std::int64_t from_elsewhere() const { return from_elsewhere_; }  ///< datagrams not taken
-  /// Datagrams that the kernel dropped because the receive buffer was full.
+  std::int64_t from_elsewhere() const { return from_elsewhere_; }  ///< datagrams rejected
+  /// Returns the datagrams that the kernel dropped because the receive buffer was full.
   std::int64_t overflowed() const { return overflowed_; }
 
  private:

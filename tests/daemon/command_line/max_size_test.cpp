@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/base/exit_code.h"
-#include "drivers/files/zstd_file.h"
+#include "drivers/files/packed_file.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {

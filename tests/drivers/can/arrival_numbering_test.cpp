@@ -9,7 +9,7 @@ constexpr double kShare = 0.05;
 
 using Numbers = std::vector<std::int64_t>;
 
-/// Numbers of frames with these arrivals, the last one before them being due at 0.
+/// Returns the numbers of frames with these arrivals after a frame that was due at 0.
 Numbers numbers(const std::vector<double>& arrivals) {
   Numbers out;
   ArrivalNumbering told;

@@ -29,7 +29,7 @@ TEST_P(Example, GivesBackTheMotionAtTheRightTimes) {
     EXPECT_EQ(c.lost + c.duplicates + c.late + c.unplaced + c.wrong_length + c.wrong_kind, 0);
   }
   EXPECT_GT(result.samples.size(), 2u * 12 * static_cast<unsigned>(rate) - 60);
-  // The frames came some fraction of a millisecond after the motion; latency and delay say so.
+  // The frames came a fraction of a millisecond after the motion, as latency and delay state.
   const double slope = 2 * M_PI * 2.5;
   for (const auto& [at, value] : result.samples) {
     const double t_s = 1e-6 * static_cast<double>(at.second - kStart_us);
@@ -147,7 +147,7 @@ TEST(CanIntake, ABabblingNodeHurtsOnlyItself) {
   for (const BusFrame& f : good) {
     bad.push_back(f);
     if (f.frame.id != 0x182) continue;
-    for (int i = 1; i <= 10; ++i) {  // the same frame again and again
+    for (int i = 1; i <= 10; ++i) {  // repeats the same frame
       bad.push_back(f);
       bad.back().frame.stamp_us += 200 * i;
     }

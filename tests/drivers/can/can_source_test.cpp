@@ -13,7 +13,8 @@
 namespace framewatch::drivers {
 namespace can_source_test {
 
-/// A bus that is a pair of AF_UNIX sockets: the frames of a raw CAN socket without a kernel's CAN.
+/// A bus made of a pair of AF_UNIX sockets, which carries the frames of a raw CAN socket without
+/// CAN in the kernel.
 struct Harness {
   CanMap map;
   CanSocket nodes;
@@ -132,10 +133,10 @@ TEST(ContinuousStamps, TakeStepsOut) {
     for (int i = 0; i < 1000; ++i, day_us += kPeriod_us) {
       const bool stepped = i >= 500;
       HostClockReading reading = reading_at(day_us, stepped ? step_us : 0);
-      reading.offset_us += i >= 700 ? 900 : 0;  // 900 us more are slewing
+      reading.offset_us += i >= 700 ? 900 : 0;  // a change of 900 us is slewing
       stamps.now(reading);
       EXPECT_EQ(stamps.steps(), stepped) << i;
-      // A frame stamped before the step is read after it.
+      // This frame was stamped before the step and is read after it.
       const bool old = i == 500;
       EXPECT_EQ(stamps.continuous(day_us + (stepped && !old ? step_us : 0)), day_us) << i;
     }

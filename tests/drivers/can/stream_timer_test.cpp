@@ -15,8 +15,8 @@ constexpr double kSettle_s = 5;
 constexpr double kPeriod_us = 10000;
 constexpr double kEpoch_us = 1.7e15;
 
-/// A node whose clock is off by `ppm`, on a bus where a frame takes 0.27 ms and waits up to
-/// `jitter_us` more. True sampling instants are known.
+/// A node with a clock error of `ppm`, on a bus where a frame takes 0.27 ms and waits up to
+/// `jitter_us` more. Knows the true sampling instants.
 struct Node {
   double ppm, jitter_us, phase_us;
   StreamTimer timer;
@@ -90,7 +90,7 @@ TEST(StreamTimer, LossesDuplicatesAndReorderingShiftNothing) {
   for (std::int64_t k = 0; k < 20000; ++k) {
     const double stamp = node.stamp_us(k);
     if (random() % 20 == 0) continue;
-    if (held < 0 && random() % 50 == 0) {  // comes after the next one
+    if (held < 0 && random() % 50 == 0) {  // held back until after the next frame
       held = k;
       held_us = stamp;
       continue;
@@ -141,7 +141,7 @@ TEST(StreamTimer, ARebootIsTheNodesOwn) {
   std::int64_t k = 0;
   double worst = 0;
   for (const auto& [number, time_us] : reboots.told) {
-    EXPECT_EQ(number, k);  // numbers go on
+    EXPECT_EQ(number, k);  // numbers continue
     const std::int64_t sample = k < 2000 ? k : k + 137;
     if (k > 500 && (k < 2000 || k > 2500))
       worst = std::max(worst, std::abs(time_us - 270 - reboots.true_us(sample)));
@@ -165,7 +165,7 @@ TEST(StreamTimer, AStepOfTheHostsClockMovesNobody) {
                                 {0, 0, 0, {}});
       }
     EXPECT_EQ(steps.count(), 1);
-    // What the step was taken for is the same for all: the nodes agree with each other.
+    // All nodes see the same step, so they stay consistent with each other.
     for (std::int64_t k = kStep + 500; k < kFrames; ++k) {
       double least = 1e18, most = -1e18;
       for (const auto& node : nodes) {
@@ -191,8 +191,8 @@ TEST(StreamTimer, WithoutCounterArrivalTellsTheNumber) {
   EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
 }
 
-/// Arrivals when the host or its adapter stalls for 10 to 40 ms now and then: what was due comes
-/// at the end of the stall, in order.
+/// Returns arrivals when the host or its adapter stalls for 10 to 40 ms at times: frames due in
+/// that time arrive at the end of the stall, in order.
 std::vector<double> with_stalls(Node& node, std::int64_t frames, std::int64_t from) {
   std::mt19937 random(31);
   std::uniform_real_distribution<double> length_us(10'000, 40'000), apart_us(300'000, 900'000);
@@ -249,7 +249,7 @@ TEST(StreamTimer, LossesBetweenStallsStayWhereTheyWere) {
   };
   std::mt19937 random(37);
   for (std::int64_t k = 0; k < kFrames; ++k) {
-    // Of a late frame after a lost one nobody could tell which it is.
+    // After a lost frame, a late one cannot be identified.
     bool quiet = k > 100 && k < kFrames - 4;
     for (std::int64_t n = k - 3; quiet && n <= k + 3; ++n) quiet = on_time(n);
     if (quiet && random() % 50 == 0) continue;
@@ -265,7 +265,7 @@ TEST(StreamTimer, LossesBetweenStallsStayWhereTheyWere) {
 
 TEST(StreamTimer, ASenderHeldUpForSecondsShiftsNothing) {
   HostClockSteps steps;
-  // As a bus' SYNC that counts to 240.
+  // Like the SYNC of a bus that counts to 240.
   Node node(20, 300, 0, {CanTiming::counter, kPeriod_us, kPeriod_us, 240, 30e6}, steps);
   constexpr std::int64_t kFrames = 6000;
   double last = 0;
@@ -285,7 +285,7 @@ TEST(StreamTimer, ASenderHeldUpForSecondsShiftsNothing) {
 TEST(StreamTimer, ALineBegunLateIsFoundWithoutASharpStep) {
   constexpr double kStep_us = 0.0026 * kPeriod_us;
   for (const CanTiming kind : {CanTiming::period, CanTiming::counter}) {
-    // Arrival alone cannot tell more than half a period late from twice.
+    // Arrival alone cannot tell a frame more than half a period late from a repeated one.
     const double late_us = kind == CanTiming::period ? 4'000 : 7'000;
     HostClockSteps steps;
     Node node(0, 200, 0, {kind, kPeriod_us, kPeriod_us, 0}, steps);

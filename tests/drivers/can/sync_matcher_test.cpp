@@ -10,7 +10,7 @@
 #include "tests/drivers/can/intake_run.h"
 #include "tests/support/can_traffic.h"
 
-// Whole buses through CanIntake, whose nodes sample at the SYNC.
+// Passes whole buses, whose nodes sample at the SYNC, through CanIntake.
 namespace framewatch::drivers {
 namespace sync_matcher_test {
 
@@ -24,7 +24,7 @@ TEST(SyncMatcher, LatchedSamplesAllHaveTheTimeOfTheSync) {
   for (const auto& [at, value] : result.samples) ++instants[at.second];
   EXPECT_EQ(instants.size(), 1000u);
   for (const auto& [time_us, axes] : instants) EXPECT_EQ(axes, 18);
-  // SYNC was stamped 135 us after the instant, the nodes sample 500 us after it.
+  // The SYNC is stamped 135 us after the instant; the nodes sample 500 us after the SYNC.
   EXPECT_EQ(instants.begin()->first, kStart_us + 135 + 500);
 }
 
@@ -50,7 +50,7 @@ TEST(SyncMatcher, AFrameAfterTheNextSyncIsLateAndNotTheNextSample) {
   for (const auto& [place, value] : result.samples) EXPECT_EQ(value, whole.samples.at(place));
 }
 
-/// The host stalls for 10 to 40 ms now and then: what came meanwhile is stamped at the end.
+/// The host stalls for 10 to 40 ms at times and stamps the frames of that time at its end.
 Traffic stalled(Traffic t) {
   std::mt19937 random(41);
   std::uniform_int_distribution<std::int64_t> length_us(10'000, 40'000), apart_us(200'000, 700'000);
@@ -67,7 +67,7 @@ Traffic stalled(Traffic t) {
   return t;
 }
 
-/// Without the microseconds by which the SYNC's line may differ.
+/// Returns the samples by axis and period, so that small differences in their times do not count.
 std::map<std::pair<int, std::int64_t>, double> by_period(const Result& result) {
   std::map<std::pair<int, std::int64_t>, double> out;
   for (const auto& [at, value] : result.samples)
@@ -93,13 +93,13 @@ TEST(SyncMatcher, LateSyncsThatDoNotCountShiftNothing) {
       EXPECT_EQ(c.lost, c.late);
       dropped += c.late;
     }
-    // Alone, a frame so long after its SYNC may be of the next one, lost.
+    // Without other frames, one so long after its SYNC may belong to the next SYNC, which was lost.
     EXPECT_EQ(told.size() + static_cast<std::size_t>(dropped), right.size());
     EXPECT_EQ(dropped == 0, counting_nodes);
   }
 }
 
-/// The sender loses its processor at random, also within its first instant.
+/// The sender is interrupted at random, also within its first instant.
 Traffic starved(Traffic t, unsigned seed) {
   constexpr double kStall_us = 40'000, kApart_us = 200'000, kFrame_us = 35;
   std::mt19937 random(seed);
@@ -145,7 +145,7 @@ TEST(SyncMatcher, AnOutageThatEndsLateLosesWhatItLost) {
   constexpr std::int64_t kLost = 8, kFrame_us = 35;
   const daemon::Config config = can_example("tower");
   const Traffic good = test::can_traffic(config, kInstants);
-  // More than half of what the SYNC counts to, 2.4 s: its own count is ambiguous.
+  // More than half the range of the SYNC counter (2.4 s), so that its count alone is ambiguous.
   for (const std::int64_t late_us : {350'000, 1'270'000, 1'900'000, 2'400'000, 4'700'000}) {
     const std::int64_t end_us = kStart_us + 4'080'000 + late_us;
     Traffic left;
@@ -181,7 +181,7 @@ TEST(SyncMatcher, TheNodesCountersTellWhichSyncWasLost) {
       without = ++syncs > 100 && syncs < 5990 && random() % 40 == 0;
       lost += without;
     }
-    if (!without) holes.push_back(f);  // the whole sample, also within a burst
+    if (!without) holes.push_back(f);  // drops whole samples, also within a burst
   }
   const auto whole = by_period(run(config.can, good));
   const Result result = run(config.can, holes);

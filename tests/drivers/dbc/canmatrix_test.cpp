@@ -29,7 +29,8 @@ std::string output_of(const std::string& command) {
   return out;
 }
 
-/// Signals at random places that do not overlap; every second message is multiplexed.
+/// Makes messages with signals at random places that do not overlap; every second message is
+/// multiplexed.
 std::string random_dbc(std::mt19937& random) {
   std::string text = "VERSION \"\"\n\nBS_:\n\nBU_: A B\n\n", types;
   for (int m = 0; m < kMessages; ++m) {

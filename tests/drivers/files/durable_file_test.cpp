@@ -15,8 +15,8 @@ namespace durable_file_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 3s;          // for what should take a quarter of a second
-constexpr auto kPastSync = 2500ms;  // it is forced onto the disk every second
+constexpr auto kSoon = 3s;          // for actions that take a quarter of a second
+constexpr auto kPastSync = 2500ms;  // the file is forced onto the disk every second
 
 template <typename Condition>
 bool comes_true(Condition condition) {

@@ -20,7 +20,7 @@ namespace input_file_test {
 using test::TemporaryDirectory;
 using test::write_file;
 
-/// A name for everything that is no file, and the word for it.
+/// Returns a path for each kind of thing that is not a file, with the message expected.
 std::vector<std::pair<std::string, std::string>> no_files(const TemporaryDirectory& directory) {
   EXPECT_EQ(::mkfifo(directory.path("fifo").c_str(), 0600), 0);
   std::filesystem::create_directory(directory.path("folder"));
@@ -76,7 +76,7 @@ TEST(InputFile, OnlyWhatHasNoNameIsAbsent) {
 TEST(InputFile, NobodyRecordsToAFifo) {
   const TemporaryDirectory directory;
   ASSERT_EQ(::mkfifo(directory.path("log.partial").c_str(), 0600), 0);
-  EXPECT_FALSE(DurableFile::in_use(directory.path("log")));  // it would wait for a writer
+  EXPECT_FALSE(DurableFile::in_use(directory.path("log")));  // opening it would wait for a writer
 }
 
 TEST(InputFile, ReadsAFileThroughALink) {

@@ -11,10 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/files/cut_off_file.h"
 #include "drivers/files/durable_file.h"
+#include "drivers/files/packed_file.h"
 #include "drivers/files/text_output.h"
-#include "drivers/files/zstd_file.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::drivers {
@@ -132,7 +131,7 @@ TEST(PartialFile, ReplacesFilesOnly) {
   EXPECT_FALSE(file.open(directory.path("folder")));
   EXPECT_EQ(file.error(), "is a directory");
   EXPECT_FALSE(file.open(directory.path("pipe")));
-  EXPECT_EQ(file.error(), "is there and no plain file");
+  EXPECT_EQ(file.error(), "exists and is not a regular file");
   EXPECT_FALSE(file.open(directory.path("no folder/x")));
   ASSERT_EQ(::mkfifo(directory.path("x.partial").c_str(), 0600), 0);
   EXPECT_FALSE(file.open(directory.path("x")));
@@ -148,7 +147,7 @@ TEST(PartialFile, ThoseOfAProcessThatASignalEndsAreRemoved) {
   testing::internal::CaptureStderr();
   remove_partial_files();
   const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_EQ(said, "framewatch: ends; " + directory.path("open.partial") + " is removed\n");
+  EXPECT_EQ(said, "framewatch: stopping; removed " + directory.path("open.partial") + "\n");
   EXPECT_EQ(directory.names(), Names{"whole"});
 }
 

@@ -123,14 +123,14 @@ TEST_F(Mat, StructsBesideOtherVariablesKeepTheirName) {
   test::MatWriter(path_)
       .add_struct("run", {"t", "base"}, {times(), values(1)})
       .add_column("roof", values(2));
-  expect_said(read(), "say with --time which one is");
+  expect_said(read(), "name it with --time");
   options_.time_column = "run.t";
   expect_channels({"run.base", "roof"});
 }
 
 TEST_F(Mat, TimesInAMatrixAreNamedByTheirColumn) {
   test::MatWriter(path_).add("data", joined(times(), values(1)), kSamples, 2);
-  expect_said(read(), "say with --time which one is, or with --step");
+  expect_said(read(), "name it with --time, or give the seconds");
   expect_said(read(), "the file holds \"data\" (500 x 2 double)");
   options_.time_column = "data.1";
   expect_channels({"data.2"});
@@ -286,7 +286,7 @@ TEST_F(Mat, AFileThatWantsOthersOpenedIsRefused) {
   EXPECT_FALSE(made([](hid_t file) {
     H5Lcreate_external("/etc/passwd", "/", file, "other", H5P_DEFAULT, H5P_DEFAULT);
   }));
-  expect_said({}, "wants other files opened, which is not done");
+  expect_said({}, "refers to other files, which are never opened");
   EXPECT_FALSE(made([](hid_t file) {
     const hsize_t size = 500;
     const hid_t plist = H5Pcreate(H5P_DATASET_CREATE), space = H5Screate_simple(1, &size, nullptr);
@@ -295,13 +295,13 @@ TEST_F(Mat, AFileThatWantsOthersOpenedIsRefused) {
     H5Sclose(space);
     H5Pclose(plist);
   }));
-  expect_said({}, "wants other files opened, which is not done");
+  expect_said({}, "refers to other files, which are never opened");
 }
 
 TEST_F(Mat, AFormatThatIsDeclaredIsNotGuessed) {
   options_.format = RecordFormat::mat;
   test::write_file(path_, "t,a\n0,1\n0.01,2\n");
-  expect_said(read(), "is no MATLAB file of level 5 or 7.3");
+  expect_said(read(), "is not a MATLAB file of level 5 or 7.3");
   options_.format = RecordFormat::detect;
   test::MatWriter(path_).add_column("t", times()).add_column("a", values(1));
   ASSERT_EQ(std::system(("gzip -S .gz " + path_).c_str()), 0);

@@ -16,7 +16,7 @@ namespace record_file_test {
 constexpr double kG = 9.80665;
 constexpr double kGal = 0.01;
 
-/// Reads `text` as a file of the given name; ends with what was found.
+/// Reads texts as record files and checks the record or the problems.
 class RecordFile : public testing::Test {
  protected:
   std::optional<Record> read(const std::string& text, const RecordOptions& options = {}) {
@@ -27,7 +27,7 @@ class RecordFile : public testing::Test {
     return record;
   }
 
-  /// The text must be refused, at this place (line 0: the file), for a reason that says `rule`.
+  /// Expects a problem at this line (0: the file) that contains `rule`.
   void expect_refused(const std::string& text, int line, const std::string& rule,
                       const RecordOptions& options = {}) {
     SCOPED_TRACE(text.substr(0, 200));
@@ -114,7 +114,7 @@ TEST_F(RecordFile, RefusesMalformedCsv) {
   expect_refused("time_s,a\n0,1\n", 0, "at least 2 samples");
   expect_refused("time_s,a,a\n0,1,1\n1,1,1\n", 1, "appears twice");
   expect_refused("time_s,a,\n0,1,1\n1,1,1\n", 1, "name is empty");
-  expect_refused("time_s,\"a\"\"b\"\n0,1\n1,1\n", 1, "no quotes");
+  expect_refused("time_s,\"a\"\"b\"\n0,1\n1,1\n", 1, "must not contain");
   expect_refused("time_s,a\n0,1\n1,2,3\n2,1\n", 3, "3 fields where the header has 2");
   expect_refused("time_s,a\n0,1\n1\n2,1\n", 3, "1 fields");
   expect_refused("time_s,a\n0,1\n1,x2\n2,1\n", 3, "a: \"x2\"");
@@ -208,7 +208,7 @@ TEST_F(RecordFile, RefusesMalformedColumns) {
   expect_refused("1 2 3\n4 5\n6 7 8\n", 2, "ragged", declared(kG, 1));
   expect_refused("1 2 3\n4 5 6 7\n", 2, "ragged", declared(kG, 1));
   expect_refused("1\n2\nend\n", 3, "\"end\"", declared(kG, 1));
-  expect_refused("1\n2\n*** End\n3\n", 4, "more after", declared(kG, 1));
+  expect_refused("1\n2\n*** End\n3\n", 4, "more rows after", declared(kG, 1));
 }
 
 const char* const kXsensHead =
@@ -242,7 +242,7 @@ TEST_F(RecordFile, RefusesMalformedXsens) {
   const std::string head = kXsensHead;
   expect_refused(head, 0, "at least 2 samples");
   expect_refused(head + "0,1,1,1,1,1\n1,8334,1,1,1\n", 7, "5 fields");
-  expect_refused(head + "0,1,1,1,1,1\n1,8334.5,1,1,1,1\n", 7, "no whole number");
+  expect_refused(head + "0,1,1,1,1,1\n1,8334.5,1,1,1,1\n", 7, "not a whole number");
   expect_refused(head + "0,1,1,1,1,1\n1,4294967296,1,1,1,1\n", 7, "32 bits");
   expect_refused(head + "0,8334,1,1,1,1\n1,1,1,1,1,1\n2,16667,1,1,1,1\n", 7, "must increase");
   expect_refused(head + "0,1,1,1,1,1\n1,8334,1,1,ab,1\n", 7, "Acc_Y");

@@ -24,7 +24,7 @@ class Table : public testing::Test {
     return record;
   }
 
-  /// Times 0 and 0.01 s and values 0.5 and -1 in channel "a".
+  /// Expects times 0 and 0.01 s and values 0.5 and -1 in channel "a".
   void expect_read(const std::string& text, double unit_mps2 = 1) {
     SCOPED_TRACE(text);
     const auto record = read(text);
@@ -37,7 +37,7 @@ class Table : public testing::Test {
     EXPECT_DOUBLE_EQ(record->accel_mps2[0][1], -1 * unit_mps2);
   }
 
-  /// Refused at this line (0: the file) with each of these parts in one reason.
+  /// Expects a problem at this line (0: the file) that contains each of these parts.
   void expect_refused(const std::string& text, int line, const std::vector<std::string>& parts) {
     SCOPED_TRACE(text);
     EXPECT_FALSE(read(text));
@@ -89,7 +89,7 @@ TEST_F(Table, IsReadWithTheSeparatorsAndQuotesOfSpreadsheets) {
 }
 
 TEST_F(Table, KeepsOrderAndMissingValuesAndSaysWhatItLeavesOut) {
-  expect_refused("Time,\"b, north [g]\"\n0,1\n0.01,1\n", 1, {"b, north", "no commas"});
+  expect_refused("Time,\"b, north [g]\"\n0,1\n0.01,1\n", 1, {"b, north", "must not contain"});
   options_.columns = {"c", "a"};
   const auto two = read(
       "Logger 7\nc [g];Time [s];Temp [degC];a [m/s2]\n1;0;20;NA\n2;0,01;20;#N/A\n3;0,02;20;1,5\n");
@@ -138,7 +138,7 @@ TEST_F(Table, AsksWhetherACommaIsDecimal) {
   const auto comma = read("Time [s];a [m/s2]\n0;1,234\n1;2,345\n");
   ASSERT_TRUE(comma);
   EXPECT_DOUBLE_EQ(comma->accel_mps2[0][0], 1.234);
-  // One comma that can only be decimal says it for the whole file.
+  // One comma that can only be a decimal comma decides for the whole file.
   const auto told = read("Time;a [m/s2]\n0;1,234\n0,01;2,345\n");
   ASSERT_TRUE(told);
   EXPECT_DOUBLE_EQ(told->accel_mps2[0][1], 2.345);
@@ -160,7 +160,7 @@ TEST_F(Table, AsksForTheUnitOfATimeThatCannotBeSeconds) {
   options_.unit_mps2 = 1;
   expect_read("timestamp,a\n1795408921140,0.5\n1795408921150,-1\n");
   expect_refused("timestamp,a [g]\n1795408921140,0.5\n1795408921150,-1\n", 2, {"--time-unit"});
-  // A spreadsheet's days: the steps are 10 ms.
+  // Days of a spreadsheet in steps of 10 ms.
   expect_refused("Time;a [g]\n45987,5;1\n45987,500000116;1\n45987,500000231;1\n", 3,
                  {"spreadsheet's days"});
 }
@@ -181,7 +181,7 @@ TEST_F(Table, ReadsTimeStampsWithTheirZone) {
   ASSERT_TRUE(declared);
   EXPECT_NEAR(declared->time_s[0], 1795280400.01, 1e-6);
   expect_refused("Time,a [g]\n11/21/2026 17:00:00,1\n11/21/2026 17:00:01,1\n", 2,
-                 {"day and month"});
+                 {"which number is the month"});
   expect_refused("Time,a [g]\n17:00:00.01,1\n17:00:00.02,1\n", 2, {"without its date"});
   expect_refused("Time,a [g]\n2026-13-21T17:00:00Z,1\n", 2, {"2026-13-21", "no such time"});
   expect_refused("Time,a [g]\n2026-11-21T17:00:00Z,1\n5,1\n", 3, {"\"5\""});

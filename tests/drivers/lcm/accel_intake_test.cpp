@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/lcm/accel_messages.h"
-#include "drivers/lcm/channel_table.h"
+#include "drivers/lcm/accel_codec.h"
 
 namespace framewatch::drivers {
 namespace accel_intake_test {

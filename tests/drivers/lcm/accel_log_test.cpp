@@ -16,7 +16,7 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 class AccelLog : public testing::Test {
  protected:
-  /// A log of single samples: {time_us, node, x}.
+  /// Writes a log of single samples {time_us, node, x}.
   void write_samples(const std::vector<std::tuple<std::int64_t, std::int32_t, double>>& samples) {
     LcmLogWriter log;
     ASSERT_TRUE(log.open(path_));
@@ -114,7 +114,7 @@ TEST_F(AccelLog, RefusesForeignAndDamagedLogs) {
   foreign[whole.find("ACCEL") + 5] ^= 1;
   test::write_file(path_, foreign);
   EXPECT_FALSE(read_accel_log(path_, "ACCEL", problems_));
-  EXPECT_EQ(problems_.at(0).message, "ACCEL: the message is no accel_t");
+  EXPECT_EQ(problems_.at(0).message, "ACCEL: the message is not an accel_t");
 }
 
 }  // namespace accel_log_test

@@ -26,7 +26,7 @@ TEST(AxisBinding, UsesConfiguredAddressesWithoutATable) {
 
 using Contradictions = std::vector<AxisBinding::Contradiction>;
 
-/// Axes that a table contradicts.
+/// Returns the axes that a table contradicts.
 std::vector<std::size_t> axes_of(const Contradictions& against) {
   std::vector<std::size_t> out;
   for (const auto& c : against) out.push_back(c.wanted);
@@ -83,7 +83,8 @@ TEST(AxisBinding, WhatATableBoundStaysWhileItsSamplesCome) {
   EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"theirs", 2, 0}}}, never)), Axes{1});
   EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
   EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), 1);
-  EXPECT_TRUE(binding.apply("ACCEL", {100, {{"a", 2, 0}, {"b", 1, 0}}}).empty());  // all silent
+  EXPECT_TRUE(
+      binding.apply("ACCEL", {100, {{"a", 2, 0}, {"b", 1, 0}}}).empty());  // all nodes are silent
   EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 1);
   EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), 0);
 }

@@ -1,4 +1,4 @@
-#include "drivers/lcm/bound_sender.h"
+#include "drivers/lcm/accel_intake.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TEST(BoundSender, ANodeThatBeginsAnewTakesOverWithoutAContest) {
   std::int64_t left_out = 0;
   for (std::int64_t t = 500'000; t < 4'000'000; t += 10'000)
     left_out += !sender.takes(kNodeAnew, t);
-  EXPECT_EQ(left_out, 151);  // until the old one is silent for 2 s
+  EXPECT_EQ(left_out, 151);  // until the old address is silent for 2 s
   EXPECT_EQ(sender.contests, 0);
   EXPECT_FALSE(sender.takes(kNode, 4'000'000));
 }

@@ -7,7 +7,7 @@
 
 #include <framewatch/accel_counts_t.hpp>
 
-#include "drivers/lcm/channel_table.h"
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/numeric/nan.h"
 
@@ -23,7 +23,7 @@ estimator::AccelSample sample(std::int64_t time_us, int axis, double accel) {
 TEST(CountBlock, HoldsWhatWasAddedInItsOrder) {
   CountBlock block(kStep);
   block.add(sample(1'000'000, 3, 9.806651));
-  block.add(sample(999'000, 0, -0.25));  // a node that is late
+  block.add(sample(999'000, 0, -0.25));  // from a late node
   block.add(sample(1'010'000, 3, estimator::kNaN));
   EXPECT_EQ(block.size(), 3u);
   const auto block_read = decoded<accel_counts_t>(block.encode());
@@ -68,7 +68,7 @@ TEST(CountBlock, DamagedMessagesAreNone) {
   auto longer = good, shorter = good, many = good, foreign = good;
   longer.push_back(0);
   shorter.pop_back();
-  many[24] = 0x7f;  // two thousand million samples
+  many[24] = 0x7f;  // claims two billion samples
   foreign[0] ^= 1;
   for (const auto& bytes : {longer, shorter, many, foreign, std::vector<std::uint8_t>{}})
     EXPECT_FALSE(decoded<accel_counts_t>(bytes));

@@ -6,7 +6,7 @@
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
-// Samples, estimates and what goes with them: part of example_messages.h.
+// Examples of samples, estimates and related messages; part of example_messages.h.
 namespace framewatch::drivers::examples {
 
 inline accel_t accel() {

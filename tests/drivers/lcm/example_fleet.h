@@ -5,7 +5,7 @@
 #include <framewatch/summary_t.hpp>
 #include <framewatch/uplink_status_t.hpp>
 
-// What framewatch-fleet sends; part of example_messages.h.
+// Examples of messages that framewatch-fleet sends; part of example_messages.h.
 namespace framewatch::drivers::examples {
 
 inline summary_t summary() {

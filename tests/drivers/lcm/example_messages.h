@@ -19,7 +19,7 @@
 #include "tests/drivers/lcm/example_estimates.h"
 #include "tests/drivers/lcm/example_fleet.h"
 
-// One message of every type in lcmtypes/: those of tests/golden/every_type.lcmlog, in its order.
+// One message of every type in lcmtypes/, as in tests/golden/every_type.lcmlog and in its order.
 namespace framewatch::drivers::examples {
 
 inline event_t event() {
@@ -273,7 +273,7 @@ inline reception_t reception() {
   return m;
 }
 
-/// Calls visit(LCM channel, message) for each.
+/// Calls visit(LCM channel, message) for each message.
 template <typename Visit>
 void for_each(Visit visit) {
   visit("ACCEL", accel());

@@ -167,7 +167,7 @@ TEST(LcmLogReader, PayloadLengthOneShortCostsNoOtherEvent) {
   const Reading reading = read_bytes(with_payload_length(4, kPayload - 1));
   EXPECT_EQ(reading.intact, all_but({4}));
   EXPECT_EQ(reading.damaged_bytes, 1);
-  EXPECT_EQ(reading.other, 1);  // with 59 bytes: refused by whoever checks its size
+  EXPECT_EQ(reading.other, 1);  // with 59 bytes; checks of its size refuse it
 }
 
 TEST(LcmLogReader, BadLengthInTheLastEventReadsAsTruncation) {
@@ -246,8 +246,8 @@ TEST(LcmLogReader, ManyFalseStartsStayLinear) {
   EXPECT_GE(reading.intact.size(), 10u);
 }
 
-/// Every 64 bytes look like the beginning of an event that reaches to 100 bytes before the end,
-/// where one more reaches over them all: each has to be refused.
+/// Every 64 bytes look like the start of an event that reaches to 100 bytes before the end, where
+/// one more event reaches beyond them all. Each has to be refused.
 std::string reaching_to_the_end(std::size_t bytes) {
   std::string log;
   const std::string event = ten_events().substr(0, kEventBytes);
@@ -285,8 +285,9 @@ TEST(LcmLogReader, ExaminesTwiceTheBytesOfALogTwiceAsLongWhateverItHolds) {
 TEST(LcmLogReader, RefusesEveryEventThatIsReachedOver) {
   const std::string log = reaching_to_the_end(64 * 100);
   const Reading reading = read_bytes(log);
-  EXPECT_EQ(reading.other, 1);  // the one that reaches over the others
-  EXPECT_EQ(reading.damage.front().reason, "event's lengths reach over the start of the next one");
+  EXPECT_EQ(reading.other, 1);  // the event that reaches beyond the others
+  EXPECT_EQ(reading.damage.front().reason,
+            "the event's lengths reach beyond the start of the next one");
 }
 
 TEST(LcmLogReader, ReadsForeignLogsToTheLastByte) {

@@ -16,7 +16,7 @@ struct Seen {
   }
 };
 
-/// What is heard of messages on these channels, of which two are wanted.
+/// Returns the messages received when messages come on these channels and two of them are wanted.
 std::vector<std::string> heard(LcmProvider& lcm) {
   Seen seen;
   LcmSource source(lcm, {"ACCEL", "A.B"}, 100, seen.handler());

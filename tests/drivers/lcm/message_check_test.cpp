@@ -12,8 +12,9 @@
 namespace framewatch::drivers {
 namespace message_check_test {
 
-/// Truncations, extensions, every 32-bit word made huge, negative or zero, random bytes: nothing
-/// may be read outside the payload, which the sanitizers see, nor much memory be taken.
+/// Truncates and extends payloads, makes every 32-bit word huge, negative or zero, and tries random
+/// bytes. Decoding must not read outside the payload, which the sanitizers check, nor allocate much
+/// memory.
 template <typename Decode>
 void attack(const std::vector<std::uint8_t>& whole, const Decode& decode) {
   ASSERT_TRUE(decode(whole));

@@ -11,7 +11,7 @@
 
 #include "tests/support/temporary.h"
 
-// cmake/lcm-layouts.awk, which the build runs over lcmtypes/*.lcm.
+// Tests cmake/lcm-layouts.awk, which the build runs over lcmtypes/*.lcm.
 namespace framewatch::drivers {
 namespace message_layout_test {
 
@@ -21,7 +21,7 @@ struct Generated {
   int status = 0;
 };
 
-/// Of one file a_t.lcm.
+/// Runs the script on one file, a_t.lcm.
 Generated generate(const std::string& lcm) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("a_t.lcm"), lcm);

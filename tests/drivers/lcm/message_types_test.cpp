@@ -1,4 +1,4 @@
-#include "drivers/lcm/message_types.h"
+#include "drivers/lcm/message_check.h"
 
 #include <set>
 #include <type_traits>
@@ -10,15 +10,13 @@
 
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
-#include "drivers/lcm/channel_table.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/lcm/message_check.h"
 #include "tests/drivers/lcm/example_messages.h"
 
 namespace framewatch::drivers {
 namespace message_types_test {
 
-// A log of the first release decodes for ever: a message with new fields is a new type, and this
+// Logs of the first release must stay readable: a message with new fields is a new type, and this
 // number never changes.
 constexpr std::uint64_t kAccelFingerprint = 0xecb49719e8cabe05;
 
@@ -97,14 +95,14 @@ TEST(Schema, SaysWhatAPayloadIsInsteadOfWhatItShouldBe) {
   auto longer = encoded(examples::window_estimate());
   longer.push_back(0);
   EXPECT_NE(why_not("window_estimate_t", longer).find("its lengths do not fit"), std::string::npos);
-  EXPECT_EQ(why_not("accel_t", std::vector<std::uint8_t>(3)), "3 bytes are no accel_t");
+  EXPECT_EQ(why_not("accel_t", std::vector<std::uint8_t>(3)), "3 bytes are too few for accel_t");
 }
 
 TEST(Schema, ANewerTypeIsCalledOne) {
   auto bytes = encoded(examples::window_estimate());
   bytes[0] ^= 0x40;
   const std::string why = why_not("window_estimate_t", bytes);
-  EXPECT_NE(why.find("no window_estimate_t as framewatch "), std::string::npos) << why;
+  EXPECT_NE(why.find("not the window_estimate_t of framewatch "), std::string::npos) << why;
   EXPECT_NE(why.find("a newer framewatch wrote them"), std::string::npos) << why;
   EXPECT_EQ(known_type(*fingerprint(bytes)), nullptr);
 }

@@ -1,4 +1,4 @@
-#include "drivers/lcm/overlap_scan.h"
+#include "drivers/lcm/log_scan.h"
 
 #include <cstddef>
 #include <random>
@@ -12,7 +12,7 @@ namespace overlap_scan_test {
 
 using Stretches = std::vector<std::pair<std::int64_t, std::int64_t>>;
 
-/// As it is said: by looking at all of them.
+/// Computes the expected result by comparing all stretches.
 std::int64_t by_looking(const Stretches& all, std::size_t first) {
   for (std::size_t i = first + 1; i < all.size(); ++i)
     if (all[i].second > all[first].second) return all[i].first;

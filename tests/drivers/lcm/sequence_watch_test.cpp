@@ -1,4 +1,4 @@
-#include "drivers/lcm/sequence_watch.h"
+#include "drivers/lcm/sequence_counter.h"
 
 #include <vector>
 
@@ -23,7 +23,7 @@ struct Fixture {
       counts.leaps += each.leaps;
       counts.contests += each.contests;
       now_us += kSecond_us;
-      for (const auto& found : watch.look(counts, now_us))
+      for (const auto& found : watch.update(counts, now_us))
         if (found) news.push_back(*found);
     }
   }

@@ -19,7 +19,7 @@ inline std::string payload(int event) {
   return bytes;
 }
 
-/// Ten events on channel ACCEL, timestamps 1000, 2000, ...
+/// Returns a log of ten events on channel ACCEL with timestamps 1000, 2000, ...
 inline std::string ten_events() {
   const test::TemporaryDirectory directory;
   LcmLogWriter writer;

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/accel_intake.h"
-#include "drivers/lcm/accel_messages.h"
 
 namespace framewatch::drivers {
 namespace two_senders_test {
@@ -44,7 +44,7 @@ struct Fixture {
   }
 };
 
-/// A second of the node alone, then `seconds` with a twin that is heard before the node each time.
+/// Sends the node alone for a second, then `seconds` with a twin whose messages always come first.
 void both(Fixture& f, int seconds, const LcmSender& node, const LcmSender& twin,
           std::int64_t number = 0) {
   for (std::int64_t i = 0; i < 100 + 100 * seconds; ++i) {

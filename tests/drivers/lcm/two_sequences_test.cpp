@@ -21,7 +21,7 @@ bool is_second(const Message& m) {
   return m.digest >= kSecond;
 }
 
-/// The i-th message of a sender whose numbers and stamps are so far from those of the first.
+/// Returns the i-th message of a sender with these offsets of number and time to the first sender.
 Message message(std::int64_t i, std::uint64_t digest, std::int64_t number = 0,
                 std::int64_t phase_us = 0) {
   return {100 + i + number, 1'000'000 + kPeriod_us * i + phase_us,
@@ -33,7 +33,7 @@ struct Taken {
   std::int64_t first = 0, second = 0;
 };
 
-/// The first sender alone for a second, then both for 10 s, message by message.
+/// Sends the first sender alone for a second, then both by turns for 10 s.
 Taken taken(SequenceCounter& counter, std::int64_t number, std::int64_t phase_us,
             bool second_comes_first = false) {
   Taken out;
@@ -95,7 +95,7 @@ TEST(TwoSequences, WhereNothingTellsThemApartNoneGoesOnUntilOneIsLeft) {
   for (std::int64_t i = 1100; i < 2000; ++i)
     fresh += counter.see(message(i, kFirst)) == Verdict::fresh;
   EXPECT_GT(fresh, 350);
-  EXPECT_LT(fresh, 450);  // of the 4 s after the 5 s that must be good
+  EXPECT_LT(fresh, 450);  // of the 4 s after the 5 s that must be taken
 }
 
 TEST(TwoSequences, RepeatedMessagesAreNoOtherSender) {

@@ -1,4 +1,4 @@
-// miniSEED of framewatch and of other people's recorders.
+// miniSEED files of framewatch and of recorders.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,7 +34,7 @@ class Miniseed : public testing::Test {
     return record;
   }
 
-  /// Samples `from` on, of the channel's one clock.
+  /// Returns the samples from index `from` on, on the clock of the channel.
   static test::SeedSpan span(int from, int count) {
     test::SeedSpan out;
     out.start_us = kStart_us + from * std::int64_t{10'000};
@@ -144,7 +144,7 @@ TEST_F(Miniseed, AGapIsFilledAndSaid) {
   expect_counts(*record, 0, 0, 0, 600);
   expect_counts(*record, 0, 750, 750, 600);
   for (std::size_t i = 600; i < 750; ++i) ASSERT_TRUE(std::isnan(record->accel_mps2[0][i]));
-  expect_said(record, "a gap of 1.5 s from 2026-11-24T00:00:06.250000Z on");
+  expect_said(record, "an interruption of 1.5 s from 2026-11-24T00:00:06.250000Z on");
 }
 
 TEST_F(Miniseed, WhatIsThereTwiceIsTakenOnceWhereItIsAlikeAndRefusedWhereNot) {
@@ -153,19 +153,18 @@ TEST_F(Miniseed, WhatIsThereTwiceIsTakenOnceWhereItIsAlikeAndRefusedWhereNot) {
   ASSERT_TRUE(record) << said(record);
   ASSERT_EQ(record->time_s.size(), 800U);
   expect_counts(*record, 0, 0, 0, 800);
-  expect_said(record, "700 samples are there twice, alike: taken once");
+  expect_said(record, "700 samples appear twice with equal values: used once");
   test::SeedSpan other = span(500, 300);
   other.values[0] += 1;
   record = read(first + miniseed(other));
-  expect_said(record,
-              "samples from 2026-11-24T00:00:05.250000Z on are there twice, with different");
+  expect_said(record, "samples from 2026-11-24T00:00:05.250000Z on appear twice, with different");
 }
 
 TEST_F(Miniseed, SamplesBetweenTheStepsAreRefused) {
   test::SeedSpan later = span(600, 600);
   later.start_us += 3'000;
   const auto record = read(miniseed(span(0, 600)) + miniseed(later));
-  expect_said(record, "lie 0.30 of a step off those before");
+  expect_said(record, "are 0.30 of a step off those before");
 }
 
 TEST_F(Miniseed, AClockThatIsALittleOffItsRateKeepsItsTimes) {
@@ -236,7 +235,7 @@ TEST_F(Miniseed, GzipIsReadAsItIs) {
 
 TEST_F(Miniseed, KinsmenThatAreNotReadAreCalledByTheirName) {
   auto record = read("MS\x03" + std::string(100, '\0'));
-  expect_said(record, "is miniSEED 3, which is not read: write miniSEED 2");
+  expect_said(record, "is miniSEED 3, which is not supported: write miniSEED 2");
   record = read("000001V 010009502.3121992,001" + std::string(300, ' '));
   expect_said(record, "is a full SEED volume");
 }
@@ -259,7 +258,7 @@ TEST(UnreadFormats, AreRefusedWithWhatHelps) {
   const std::string instead = "export it as CSV or MATLAB .mat";
   for (const auto& [name, bytes, word] : std::vector<std::array<std::string, 3>>{
            {"a.mf4", "MDF     4.10    " + std::string(200, '\0'), "ASAM MDF"},
-           {"a.mdf", "UnFinMF 4.10    " + std::string(200, '\0'), "ASAM MDF, not finished"},
+           {"a.mdf", "UnFinMF 4.10    " + std::string(200, '\0'), "ASAM MDF, unfinished"},
            {"a.uff", "    -1\n    58\nAcceleration\n", "a Universal File (UFF, UNV)"},
            {"b.unv", "    -1\r\n    58b     1     2\r\n", "a Universal File (UFF, UNV)"},
            {"a.h5", "\x89HDF\r\n\x1a\n" + std::string(200, '\0'), "HDF5"}}) {

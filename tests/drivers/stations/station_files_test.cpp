@@ -1,4 +1,4 @@
-// Records as networks of strong-motion stations publish them.
+// Records in the formats of strong-motion networks.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/formats/record_file.h"
-#include "drivers/records/record_merge.h"
+#include "drivers/records/record_builder.h"
 #include "tests/support/data.h"
 #include "tests/support/station_files.h"
 #include "tests/support/temporary.h"
@@ -39,7 +39,7 @@ class StationFile : public testing::Test {
     SCOPED_TRACE(rule);
     EXPECT_FALSE(read(text, options));
     ASSERT_FALSE(problems_.empty());
-    if (line >= 0) {  // -1: wherever that is
+    if (line >= 0) {  // -1: at any line
       EXPECT_EQ(problems_[0].where, line > 0 ? fmt::format("{}:{}", path_, line) : path_);
     }
     EXPECT_NE(problems_[0].message.find(rule), std::string::npos) << problems_[0].message;
@@ -66,10 +66,11 @@ TEST_F(StationFile, OfCosmosHasNameUnitStartAndDirection) {
   EXPECT_DOUBLE_EQ(r->accel_mps2[0][0], 0.01);
   EXPECT_DOUBLE_EQ(r->accel_mps2[0][2], -99.99001);
   EXPECT_DOUBLE_EQ(r->accel_mps2[0][3], -0.025);
-  EXPECT_EQ(r->notes, (std::vector<std::string>{
-                          "NP.8040.01.HNE: azimuth 270 deg, Basement NW corner",
-                          "uncorrected; not used of the header: coordinates, event, the sensor's "
-                          "own 224 Hz (damping 0.7); begins 2018-11-30T17:29:06.332Z"}));
+  EXPECT_EQ(r->notes,
+            (std::vector<std::string>{
+                "NP.8040.01.HNE: azimuth 270 deg, Basement NW corner",
+                "uncorrected; not used from the header: coordinates, event, the sensor's "
+                "natural frequency 224 Hz (damping 0.7); begins 2018-11-30T17:29:06.332Z"}));
 }
 
 TEST_F(StationFile, OfCosmosMayHoldCountsOrSeveralQuantitiesAndChannels) {
@@ -98,7 +99,7 @@ TEST_F(StationFile, OfCosmosMayHoldCountsOrSeveralQuantitiesAndChannels) {
     });
   };
   EXPECT_TRUE(said("corrected, 0.1 to 40 Hz kept"));
-  EXPECT_TRUE(said("velocity and displacement in the file are left out"));
+  EXPECT_TRUE(said("velocity and displacement in the file were left out"));
 }
 
 TEST_F(StationFile, OfCosmosMayBeWrittenInOtherLettersAndFormats) {
@@ -119,7 +120,7 @@ TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
   expect_refused(replaced(good, "with 5 text", "with many text"), 1, "lines of text");
   expect_refused(replaced(good, "100 Integer", "10 Integer"), 6, "76 at least");
   expect_refused(replaced(good, "(5F15.6)", "(free)"), 17, "a format such as");
-  expect_refused(replaced(good, "    2018", "    20x8"), 10, "no finite number");
+  expect_refused(replaced(good, "    2018", "    20x8"), 10, "not a finite number");
   expect_refused(good.substr(0, 600), -1, "nteger-header values: ");
   expect_refused(replaced(good, "4 acceleration", "5 acceleration"), 42, "4 of 5 numbers");
   expect_refused(replaced(good, "4 acceleration", "0 acceleration"), 40, "number and format");
@@ -131,7 +132,7 @@ TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
   expect_refused(good + good, 0, "appears twice");
   expect_refused(replaced(good, "      11", "     257"), 1, "no time");
   expect_refused(replaced(good, "    2018", "   67554"), 1, "no time");
-  expect_refused(replaced(good, "8040.HNE", "8040.H,E"), 0, "no commas");
+  expect_refused(replaced(good, "8040.HNE", "8040.H,E"), 0, "must not contain");
   RecordOptions zone;
   zone.zone_min = -540;
   expect_refused(good, 1, "--zone does not apply", zone);
@@ -168,7 +169,7 @@ TEST_F(StationFile, OfSmcThatIsDamagedIsRefused) {
   expect_refused(replaced(smc(), "2 CORRECTED ACCELEROGRAM", ""), 1, "neither", forced);
   expect_refused(replaced(smc(), "2 CORRECTED ACCELEROGRAM", "3 VELOCITY"), 1, "neither", forced);
   expect_refused(replaced(smc(), "0.2000000E+03", "0.0000000E+00"), 18, "samples a second");
-  expect_refused(replaced(smc(), " .4000E+01", " .4zzzE+01"), 29, "no finite number");
+  expect_refused(replaced(smc(), " .4000E+01", " .4zzzE+01"), 29, "not a finite number");
 }
 
 TEST_F(StationFile, OfKnetIsReadWithItsHeader) {
@@ -227,12 +228,12 @@ TEST_F(StationFile, OfSacThatIsDamagedOrNoAccelerationIsRefused) {
   refused(sac(false, {{86, 7}}), "velocity");
   refused(sac(false, {{85, 2}}), "spectrum");
   refused(sac(false, {{105, 0}}), "uneven");
-  refused(sac(false, {{71, 0}}), "time is none");
+  refused(sac(false, {{71, 0}}), "not a valid time");
   refused(sac(false, {{5, std::bit_cast<int>(1e20F)}}), "it begins at 1e+20 s");
   refused(sac(false, {{79, 1 << 30}}), "at most");
 }
 
-/// Every file in `folder` that has this ending.
+/// Returns every file in `folder` with this ending.
 std::vector<std::string> files_of(const std::string& folder, const std::string& ending) {
   std::vector<std::string> out;
   std::error_code error;
@@ -259,7 +260,7 @@ TEST_F(StationFile, OfARealBuildingIsReadAsAWholeStation) {
   EXPECT_EQ(all->time_s.size(), 42000u);
   EXPECT_NEAR(all->time_s[0], 1543598946.332, 1e-3);
   EXPECT_DOUBLE_EQ(all->rate_hz, 200);
-  EXPECT_EQ(all->notes.size(), 53u);  // where each sensor is, and what holds for all
+  EXPECT_EQ(all->notes.size(), 53u);  // the place of each sensor, and notes on all
 }
 
 TEST_F(StationFile, RawCountsOfARealSensorAreWhatItsNetworkMadeOfThem) {

@@ -1,4 +1,4 @@
-// Where networks say an instrument is.
+// The places of instruments in the words of networks.
 #include <gtest/gtest.h>
 
 #include "drivers/stations/station_words.h"

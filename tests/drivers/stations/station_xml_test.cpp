@@ -1,4 +1,4 @@
-// What StationXML says of the numbers in a miniSEED or SAC file.
+// StationXML and what it says about the numbers in a miniSEED or SAC file.
 #include <cmath>
 #include <optional>
 #include <string>
@@ -91,7 +91,8 @@ TEST_F(StationXml, SaysWhatACountIsAndWhereAChannelSits) {
       if (note.find(words) != std::string::npos) return true;
     return false;
   };
-  EXPECT_TRUE(said("XX.TEST.01.HN1: azimuth 20 deg, 7th floor & E side, 2.34375e-06 m/s2 a count"));
+  EXPECT_TRUE(
+      said("XX.TEST.01.HN1: azimuth 20 deg, 7th floor & E side, 2.34375e-06 m/s2 per count"));
   EXPECT_TRUE(said("not used: the response's stages, elevation, depth"));
 }
 
@@ -115,7 +116,7 @@ TEST_F(StationXml, OfARateThatIsNotTheRecordsSaysSo) {
   slow.rate = "50";
   const auto r = read(station_xml({slow}), miniseed(span()));
   ASSERT_TRUE(r);
-  EXPECT_NE(r->notes[0].find("there it has 50 Hz, in the record 100 Hz"), std::string::npos)
+  EXPECT_NE(r->notes[0].find("StationXML says 50 Hz, the record 100 Hz"), std::string::npos)
       << r->notes[0];
 }
 
@@ -127,7 +128,7 @@ TEST_F(StationXml, ThatCannotSayWhatACountIsIsRefused) {
   c = {};
   c.unit = "M/S";
   EXPECT_FALSE(read(station_xml({c}), miniseed(span())));
-  expect_said("measures \"M/S\", no acceleration that is known");
+  expect_said("measures \"M/S\", which is not a known unit of acceleration");
   c = {};
   c.sensitivity = "0";
   EXPECT_FALSE(read(station_xml({c}), miniseed(span())));
@@ -157,13 +158,13 @@ TEST_F(StationXml, ServesSacToo) {
 TEST_F(StationXml, ThatIsDamagedIsRefused) {
   const std::string good = station_xml({{}});
   ASSERT_TRUE(parse(good));
-  expect_refused(good.substr(0, good.size() - 20), 23, "is no XML");
-  expect_refused("", 1, "is no XML");
+  expect_refused(good.substr(0, good.size() - 20), 23, "is not XML");
+  expect_refused("", 1, "is not XML");
   expect_refused("<html><body/></html>", 1, "its root is \"html\"");
   expect_refused("<FDSNStationXML/>", 0, "has no channel");
   XmlChannel c;
   c.azimuth = "north";
-  expect_refused(station_xml({c}), 10, "Azimuth \"north\" is no number from -360 to 360");
+  expect_refused(station_xml({c}), 10, "Azimuth \"north\" is not a number from -360 to 360");
   c = {};
   c.azimuth = "361";
   expect_refused(station_xml({c}), 10, "Azimuth \"361\"");
@@ -175,13 +176,13 @@ TEST_F(StationXml, ThatIsDamagedIsRefused) {
   expect_refused(station_xml({c}), 15, "InstrumentSensitivity");
   c = {};
   c.start = "yesterday";
-  expect_refused(station_xml({c}), 6, "\"yesterday\" is no time");
+  expect_refused(station_xml({c}), 6, "\"yesterday\" is not a time");
   std::string deep = "<FDSNStationXML>";
   for (int i = 0; i < 40; ++i) deep += "<a>";
-  expect_refused(deep, 1, "nested over 32 deep");
+  expect_refused(deep, 1, "nested more than 32 deep");
 }
 
-/// Neither files nor entities of its own: no document type at all.
+/// A document type is refused, so no files are read and no entities are expanded.
 TEST_F(StationXml, WithADocumentTypeIsRefused) {
   const std::string good = station_xml({{}});
   const std::size_t root = good.find("<FDSN");
@@ -195,7 +196,7 @@ TEST_F(StationXml, WithADocumentTypeIsRefused) {
     expect_refused(good.substr(0, root) + type + good.substr(root), 2, "has a document type");
   std::string undefined = good;
   undefined.replace(undefined.find("&amp;"), 5, "&who;");
-  expect_refused(undefined, 7, "is no XML: undefined entity");
+  expect_refused(undefined, 7, "is not XML: undefined entity");
 }
 
 TEST_F(StationXml, OfAnyLengthTakesBoundedMemory) {

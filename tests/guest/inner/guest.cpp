@@ -14,7 +14,7 @@
 #include "daemon/tools/simulation/scenario.h"
 #include "daemon/tools/simulation/simulation.h"
 #include "drivers/can/can_encoder.h"
-#include "drivers/lcm/accel_messages.h"
+#include "drivers/lcm/accel_codec.h"
 
 namespace framewatch::test {
 
@@ -82,7 +82,7 @@ std::vector<estimator::WindowEstimate> estimates_over_lcm(const std::string& pat
   for (std::int64_t k = 0; k < daemon::instants(*scenario); ++k) {
     std::vector<double> values = simulation.next();
     for (std::size_t a = 0; a < values.size(); ++a)
-      values[a] = encoder.quantised(static_cast<int>(a), values[a]);
+      values[a] = encoder.quantized(static_cast<int>(a), values[a]);
     for (const drivers::Message& m : messages.samples(10'000 * k, values))
       estimation.message(m.channel, m.bytes.data(), m.bytes.size());
   }

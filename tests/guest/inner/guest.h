@@ -34,7 +34,7 @@ struct Vcan {
 inline constexpr const char* kTowerScenario =
     FRAMEWATCH_SOURCE_DIR "/configs/can/scenario_tower.toml";
 
-/// Estimates of a scenario's samples, quantised as its CAN nodes do, over LCM messages.
+/// Estimates of a scenario's samples, quantized as its CAN nodes do, over LCM messages.
 std::vector<estimator::WindowEstimate> estimates_over_lcm(const std::string& scenario,
                                                           double seconds);
 

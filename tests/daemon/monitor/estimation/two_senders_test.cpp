@@ -16,7 +16,7 @@
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/tools/replay/replay_command.h"
-#include "drivers/lcm/accel_messages.h"
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/support/recorded_table_test.h"

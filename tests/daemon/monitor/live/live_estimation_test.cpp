@@ -9,7 +9,7 @@
 
 #include "daemon/monitor/live/run_command.h"
 #include "daemon/tools/replay/replay_command.h"
-#include "drivers/lcm/accel_messages.h"
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_log.h"
 #include "tests/support/child.h"
 #include "tests/support/recorded_table_test.h"

@@ -53,7 +53,7 @@ TEST_F(ImplausibleRecords, AfterLostSamplesTheLineIsStillTheFiles) {
 
 TEST_F(ImplausibleRecords, ValuesThatCannotBeAreRefused) {
   expect_holds(said("time_s,a\n0,1\n0.01,1e300\n0.02,1\n", 2),
-               "rec.csv:3: a: 1e+300 is no acceleration");
+               "rec.csv:3: a: 1e+300 is not an acceleration");
 }
 
 TEST_F(ImplausibleRecords, TimesInMillisecondsOrMicrosecondsAreDoubted) {

@@ -13,7 +13,7 @@ namespace framewatch::drivers {
 
 inline constexpr const char* kTestGroup = "239.255.76.67";
 
-/// Sends datagrams written by hand to a multicast group over the loopback, or to one address.
+/// Sends given datagrams to a multicast group over the loopback, or to one address.
 class DatagramSender {
  public:
   explicit DatagramSender(std::uint16_t port, const char* address = kTestGroup)

@@ -68,7 +68,7 @@ TEST_F(Assembly, RefusesPartsThatOverlapOrLeaveAHole) {
   EXPECT_EQ(add(part(1, 7, 0, 0, 2, kFirst)), Outcome::waits);
   EXPECT_EQ(add(part(1, 7, 4, 1, 2, "efg")), Outcome::refused);  // the fourth byte is missing
   EXPECT_EQ(add(part(2, 6, 0, 0, 2, kFirst)), Outcome::waits);
-  EXPECT_EQ(add(part(2, 6, 2, 1, 2, "cdef")), Outcome::refused);  // one byte twice
+  EXPECT_EQ(add(part(2, 6, 2, 1, 2, "cdef")), Outcome::refused);  // one byte comes twice
   EXPECT_EQ(add(part(3, 6, 0, 0, 3, kFirst)), Outcome::waits);
   EXPECT_EQ(add(part(3, 6, 0, 1, 3, "abcdef")), Outcome::refused);
   EXPECT_EQ(assembly_.bytes(), 0u);
@@ -86,7 +86,8 @@ TEST_F(Assembly, KeepsNothingOfUnwantedChannels) {
             Outcome::unwanted);
   EXPECT_EQ(add(part(1, 200'000, 60'000, 1, 4, std::string(60'000, 'x'))), Outcome::unwanted);
   EXPECT_EQ(assembly_.bytes(), 0u);
-  EXPECT_EQ(add(part(2, 200'000, 60'000, 1, 4, "y")), Outcome::waits);  // not yet known of whom
+  EXPECT_EQ(add(part(2, 200'000, 60'000, 1, 4, "y")),
+            Outcome::waits);  // the sender is not known yet
   EXPECT_EQ(add(part(2, 200'000, 0, 0, 4, std::string("OTHER\0", 6))), Outcome::unwanted);
   EXPECT_EQ(assembly_.bytes(), 0u);
   EXPECT_EQ(assembly_.unfinished(), 0);

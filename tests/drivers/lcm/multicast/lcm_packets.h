@@ -12,12 +12,12 @@ inline void append(Bytes& out, const std::string& text) {
   out.insert(out.end(), text.begin(), text.end());
 }
 
-/// Big endian, `bytes` of them.
+/// Returns `bytes` bytes of a number, big endian.
 inline void append(Bytes& out, std::uint32_t value, int bytes) {
   for (int i = bytes - 1; i >= 0; --i) out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
-/// A message in one datagram, as LCM's wire format has it.
+/// Returns a message in one datagram in the wire format of LCM.
 inline Bytes whole(std::uint32_t sequence, const std::string& channel, const std::string& payload) {
   Bytes out;
   append(out, "LC02");
@@ -26,7 +26,7 @@ inline Bytes whole(std::uint32_t sequence, const std::string& channel, const std
   return out;
 }
 
-/// A datagram with a part of a message. `body`: with channel and NUL in part 0.
+/// Returns a datagram with a part of a message. `body` includes channel and NUL in part 0.
 inline Bytes part(std::uint32_t sequence, std::uint32_t message_bytes, std::uint32_t offset,
                   std::uint32_t number, std::uint32_t parts, const std::string& body) {
   Bytes out;

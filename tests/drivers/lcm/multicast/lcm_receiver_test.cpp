@@ -42,7 +42,7 @@ class Receiver : public testing::Test {
     std::string error;
     ASSERT_TRUE(receiver_->open(group(), error)) << error;
   }
-  /// Messages up to the one on END.
+  /// Returns the messages up to the one on END.
   std::vector<ReceivedMessage> until_end() {
     std::vector<ReceivedMessage> out;
     for (ReceivedMessage m; m.channel != "END";) {
@@ -139,11 +139,12 @@ TEST_F(Receiver, SaysWhichInterfacesThereAre) {
   LcmReceiver receiver({"WANTED"}, 10);
   std::string error;
   EXPECT_FALSE(receiver.open(group({"lo", "eth77"}), error));
-  EXPECT_NE(error.find("no network interface 'eth77': there are "), std::string::npos) << error;
+  EXPECT_NE(error.find("no network interface 'eth77'; this machine has "), std::string::npos)
+      << error;
   EXPECT_NE(error.find("lo"), std::string::npos) << error;
 }
 
-/// Another host: a network namespace beside ours, joined to it by a cable whose ends are v0 here
+/// Another host: a network namespace joined to ours by a virtual cable with the ends v0 here
 /// (10.9.0.1) and v1 there (10.9.0.2).
 class OtherHost {
  public:
@@ -164,7 +165,7 @@ class OtherHost {
     if (process_ > 0) ::kill(process_, SIGKILL);
   }
   bool there() const { return process_ > 0; }
-  /// Sends that message from there, to the group or to our address.
+  /// Sends the message from the other host to the group or to our address.
   bool send(const std::string& to, const std::string& payload) const {
     return std::system(fmt::format("nsenter -t {} -n python3 -c \"import socket,struct\n"
                                    "s=socket.socket(socket.AF_INET,socket.SOCK_DGRAM)\n"
@@ -198,7 +199,7 @@ TEST_F(Receiver, TakesFromOtherHostsOnlyOverNamedInterfaces) {
   EXPECT_EQ(open.counters().from_elsewhere, 0);
 
   sender_.send(whole(2, "END", ""));
-  const auto messages = until_end();  // of the one that names the loopback only
+  const auto messages = until_end();  // of the receiver on the loopback only
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_EQ(text(messages[0]), "our own");
 }
