@@ -56,7 +56,7 @@ std::string drift_table_section(const DriftReport& r, const Config& config) {
       row.insert(row.end(), {"-", "-"});
     }
     row.push_back(std::string(d.measured ? "measured" : "computed") +
-                  (d.known() && d.gap_at_peak() ? "; gap" : ""));
+                  (d.known() && d.gap_at_peak() ? "; unknown in part" : ""));
     row.insert(row.end(), {part(d.noise_error, d), part(d.slow_error, d),
                            d.measured ? "-" : part(d.model_error, d)});
     if (r.placard)

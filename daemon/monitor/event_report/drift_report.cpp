@@ -28,9 +28,8 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
       return fmt::format("the drift of story {} is not known", drift.story);
     case PlacardReason::gap:
       return fmt::format(
-          "the record has a gap in the strong motion of story {}: its peak drift may be larger "
-          "than "
-          "the {} that was seen",
+          "the drift of story {} is unknown in part of its strong motion: its peak may be larger "
+          "than the {} that was seen",
           drift.story, drift_words(drift.ratio));
     default:
       return fmt::format(
@@ -118,7 +117,8 @@ std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
         "alone is not in its error.");
   if (!gaps.empty())
     out.push_back(
-        fmt::format("The record has a gap in the strong motion of {}: the peak may be larger.",
+        fmt::format("The drift of {} is unknown in part of the strong motion, because the record "
+                    "begins in it or samples are missing: the peak may be larger.",
                     stories_words(gaps)));
   if (!unknown.empty())
     out.push_back(

@@ -3,17 +3,99 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <string_view>
 
 #include <fmt/core.h>
 
-#include "daemon/tools/diagnosis/kind_section.h"
-#include "daemon/tools/diagnosis/noise_beyond.h"
+#include "daemon/base/html_page.h"
+#include "daemon/base/svg_plot.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::daemon {
 namespace {
+
+constexpr double kBeyond = 2;
+
+double quietest(const std::vector<estimator::RecordSegment>& segments, Eigen::Index axis) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const estimator::RecordSegment& s : segments)
+    least = std::min(
+        least,
+        std::sqrt(estimator::quiet_noise_variance(s.accel.col(axis), s.rate_hz) / (s.rate_hz / 2)));
+  return least;
+}
+
+constexpr Eigen::Index kLoopPoints = 4000;
+
+/// In the order of estimator::LawKind.
+constexpr std::array kKindWords = {
+    "a linear element's",
+    "elastic: it follows the deformation, and what was stored comes back",
+    "an impact's: it follows the deformation from a clearance on",
+    "dissipative: it follows the rate of the deformation",
+    "hysteretic: it follows the deformation and its past",
+    "that of a stiffness which changes with time",
+    "of no kind that follows the motion there",
+};
+static_assert(kKindWords.size() == static_cast<std::size_t>(estimator::LawKind::external) + 1);
+
+/// The place whose kind was looked at; null: none, or nothing beyond a linear element.
+const estimator::WhereEntry* of_kind(const DiagnoseOutput& o) {
+  for (const estimator::WhereEntry& w : o.diagnosis.where)
+    if (w.kind) return w.kind->kind == estimator::LawKind::linear ? nullptr : &w;
+  return nullptr;
+}
+
+std::string loop(const estimator::KindOfLaw& kind) {
+  std::vector<double> d, force;
+  const Eigen::Index stride = std::max<Eigen::Index>(1, kind.d_m.size() / kLoopPoints);
+  for (Eigen::Index i = 0; i < kind.d_m.size(); i += stride) {
+    d.push_back(kind.d_m[i]);
+    force.push_back(kind.force_n[i]);
+  }
+  SvgPlot plot("force beyond a linear element, strongest record", {"deformation, m"}, {"force, N"});
+  plot.add({"", 0, SvgMark::thin_line, d, force});
+  return plot.svg();
+}
+
+/// Means of the surface along one of its sides: of all samples, and of those in the middle third of
+/// the other side.
+std::string means(const estimator::RestoringSurface& surface, bool over_deformation) {
+  const Eigen::VectorXd& at = over_deformation ? surface.d_m : surface.v_mps;
+  const Eigen::Index others = over_deformation ? surface.v_mps.size() : surface.d_m.size();
+  SvgSeries all{"all samples", 1, SvgMark::dots, {}, {}};
+  SvgSeries middle{
+      over_deformation ? "at a low rate" : "at a small deformation", 0, SvgMark::line, {}, {}};
+  for (Eigen::Index i = 0; i < at.size(); ++i) {
+    double sum = 0, count = 0, inner_sum = 0, inner_count = 0;
+    for (Eigen::Index j = 0; j < others; ++j) {
+      const double force = over_deformation ? surface.force_n(i, j) : surface.force_n(j, i);
+      const double n = over_deformation ? surface.count(i, j) : surface.count(j, i);
+      if (!std::isfinite(force)) continue;
+      sum += n * force;
+      count += n;
+      if (j < others / 3 || j >= others - others / 3) continue;
+      inner_sum += n * force;
+      inner_count += n;
+    }
+    if (count > 0) {
+      all.x.push_back(at[i]);
+      all.y.push_back(sum / count);
+    }
+    if (inner_count > 0) {
+      middle.x.push_back(at[i]);
+      middle.y.push_back(inner_sum / inner_count);
+    }
+  }
+  SvgPlot plot(over_deformation ? "mean force over deformation" : "mean force over rate",
+               {over_deformation ? "deformation, m" : "rate, m/s"}, {"force, N"});
+  plot.add(all);
+  plot.add(middle);
+  return plot.svg();
+}
 
 /// What an effect does, for people who do not know its name; in the order of EffectKind.
 constexpr std::array kPlainNames = {
@@ -50,6 +132,72 @@ constexpr std::array kPlainNames = {
 static_assert(kPlainNames.size() == static_cast<std::size_t>(estimator::EffectKind::swapped) + 1);
 
 }  // namespace
+
+std::vector<NoiseBeyond> noise_beyond_configured(
+    const estimator::Plant& plant, const std::vector<estimator::RecordSegment>& segments) {
+  std::vector<NoiseBeyond> out;
+  for (std::size_t a = 0; a < plant.axes.size(); ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double configured = plant.axes[a].noise_density;
+    if (configured <= 0 || plant.is_force(axis) || segments.front().is_displaced(axis)) continue;
+    const double read = quietest(segments, axis);
+    if (read > kBeyond * configured) out.push_back({a, configured, read});
+  }
+  return out;
+}
+
+std::string noise_sentence(const DiagnoseOutput& o) {
+  if (o.diagnosis.verdict == estimator::Verdict::adequate) return "";
+  const std::vector<NoiseBeyond> beyond = noise_beyond_configured(o.plant, o.segments);
+  if (beyond.empty()) return "";
+  const auto ratio = [](const NoiseBeyond& n) { return n.read / n.configured; };
+  const NoiseBeyond& worst = *std::max_element(
+      beyond.begin(), beyond.end(),
+      [&](const NoiseBeyond& a, const NoiseBeyond& b) { return ratio(a) < ratio(b); });
+  return fmt::format(
+      "{} reads {:.3g} times the noise that is configured ({:.2g} of {:.2g} m/s^2/sqrt(Hz), in the "
+      "quietest seconds from 20 to 46 % of the sampling rate){}. Where that is noise, so may be "
+      "what is left: record the building at rest, or leave noise_mps2_per_rthz out.",
+      o.plant.axes[worst.axis].name, ratio(worst), worst.read, worst.configured,
+      beyond.size() > 1
+          ? fmt::format(", and {} more channels twice as much or more", beyond.size() - 1)
+          : std::string());
+}
+
+std::string kind_sentence(const DiagnoseOutput& o) {
+  const estimator::WhereEntry* where = of_kind(o);
+  if (!where) return "";
+  const auto index = static_cast<std::size_t>(where->kind->kind);
+  std::string out =
+      fmt::format("What {} needs beyond a spring and a dashpot is {}",
+                  place_text(where->place, o.plant.structure, o.plant.axes), kKindWords[index]);
+  if (where->kind->kind != estimator::LawKind::external)
+    out += fmt::format(" (that explains {:.0f} % of it)", 100 * where->kind->share[index]);
+  return out + ".";
+}
+
+std::string kind_section(const DiagnoseOutput& o) {
+  const estimator::WhereEntry* where = of_kind(o);
+  if (!where) return "";
+  std::vector<std::vector<std::string>> rows;
+  for (const estimator::LawKind kind :
+       {estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
+        estimator::LawKind::hysteretic, estimator::LawKind::time_varying}) {
+    std::string word = law_kind_word(kind);
+    std::replace(word.begin(), word.end(), '_', ' ');
+    rows.push_back(
+        {word, fmt::format("{:.0f} %", 100 * where->kind->share[static_cast<std::size_t>(kind)])});
+  }
+  const estimator::KindOfLaw& kind = *where->kind;
+  return "<h2>What sort of force</h2>\n<p>" + html_text(kind_sentence(o)) +
+         " General functions of each kind, fitted to the force that this place alone would need, "
+         "explain of it beyond noise:</p>\n" +
+         html_table({"kind", "explains"}, rows) +
+         html_figure({loop(kind), means(kind.surface, true), means(kind.surface, false)},
+                     "The force that the place needs beyond a spring and a dashpot, whatever its "
+                     "law: closed loops dissipate, a single curve is elastic, a step at rate zero "
+                     "is friction.");
+}
 
 std::string gap_percent(double share) {
   return fmt::format("{:.2f} %", 100 * share);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/tools/report/channel_result.h"
+#include "daemon/tools/report/session_file.h"
 #include "estimator/motion/noise_meter.h"
 #include "estimator/motion/sample.h"
 #include "estimator/motion/sample_merger.h"

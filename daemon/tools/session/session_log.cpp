@@ -7,6 +7,28 @@
 
 namespace framewatch::daemon {
 
+std::size_t MessageRing::cost(const KeptMessage& message) {
+  return sizeof message + message.channel.size() + message.bytes.size();
+}
+
+void MessageRing::push(KeptMessage message) {
+  const std::int64_t oldest_us = message.received_us - span_us_;
+  bytes_ += cost(message);
+  messages_.push_back(std::move(message));
+  while (!messages_.empty() && (bytes_ > most_bytes_ || messages_.front().received_us < oldest_us))
+    drop_oldest();
+}
+
+void MessageRing::drop_oldest() {
+  bytes_ -= cost(messages_.front());
+  messages_.pop_front();
+}
+
+void MessageRing::clear() {
+  messages_.clear();
+  bytes_ = 0;
+}
+
 bool SessionLog::open(const std::string& folder, bool lcm, bool can, std::string& error) {
   return (!lcm || raw_.open(folder + "/" + kRawLog, error)) &&
          (!can || can_.open(folder + "/" + kCanLog, error)) &&
