@@ -19,7 +19,6 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/effects.h"
 #include "daemon/tools/diagnosis/diagnose_json.h"
-#include "daemon/tools/diagnosis/diagnose_output.h"
 #include "daemon/tools/diagnosis/diagnose_records.h"
 #include "daemon/tools/diagnosis/diagnose_report.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
@@ -31,9 +30,11 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kMin = 1e-6;  ///< values of a design must be positive
+constexpr int kGapRemains = 1;
+constexpr double kComponentMass = 0.1;  ///< tolerance of a component test's mass
+constexpr double kMin = 1e-6;           ///< least value of a design, which must be positive
 
-/// [story][frame] lists of stiffness or damping, as in [structure.design].
+/// Returns [story][frame] lists of stiffness or damping, as in [structure.design].
 std::string grid(const estimator::ParameterTable& table, const Eigen::VectorXd& theta, int stories,
                  int from, int count, bool damping) {
   std::string out = "[";
@@ -68,7 +69,7 @@ std::string panels(const estimator::Structure& s, const estimator::ParameterTabl
   return out + "]";
 }
 
-/// Rotational stiffness of frames whose bending is part of the design, of every floor.
+/// Returns the rotational stiffness at every floor of frames whose bending is part of the design.
 std::string bending(const estimator::Plant& plant, const estimator::Model& model) {
   std::string out;
   for (const estimator::ModelEffect& e : model.effects) {
@@ -103,116 +104,16 @@ std::string without(const std::string& text, const std::string& name) {
   return out;
 }
 
-constexpr int kGapRemains = 1;
-constexpr double kComponentMass = 0.1;  ///< tolerance
-
-bool write_file(const std::string& path, const std::string& text) {
-  drivers::TextOutput out;
-  if (out.open(path) && out.write(text) && out.close()) return true;
-  fmt::print(stderr, "{}: {}\n", path, out.error());
-  return false;
-}
-
-/// Keeps freed memory in the heap: matrices of megabytes are allocated and freed by the thousand.
-void keep_freed_memory() {
-  constexpr int kLargest = 1 << 30;
-  ::mallopt(M_ARENA_MAX, 1);
-  ::mallopt(M_MMAP_THRESHOLD, kLargest);
-  ::mallopt(M_TRIM_THRESHOLD, kLargest);
-}
-
-/// Whether there are any.
-bool print_all(const std::vector<std::string>& problems) {
-  for (const std::string& p : problems) fmt::print(stderr, "{}\n", printable_lines(p));
-  return !problems.empty();
-}
-
-std::vector<estimator::EffectKind> excluded_kinds(const std::vector<std::string>& names,
-                                                  std::vector<std::string>& problems) {
-  std::vector<estimator::EffectKind> out;
-  for (const std::string& name : names) {
-    if (const auto kind = estimator::find_effect(name))
-      out.push_back(*kind);
-    else
-      problems.push_back(fmt::format("--without {}: no effect has this name", name));
-  }
-  return out;
-}
-
-std::vector<DiagnoseRecord> read_records(const Config& config, const DiagnoseArguments& a,
-                                         std::vector<std::string>& problems) {
-  const bool both_given = !a.train.empty() && !a.holdout.empty();
-  const bool any_given = !a.train.empty() || !a.holdout.empty();
-  if (a.event.empty() ? !both_given : any_given)
-    problems.push_back("needs --train and --holdout, or --event alone");
-  if (!a.event.empty() && !any_given) return read_event_records(config, a.event, problems);
-  std::vector<std::string> paths = a.train;
-  paths.insert(paths.end(), a.holdout.begin(), a.holdout.end());
-  return read_diagnose_records(config, paths, a.component, problems);
-}
-
-/// Shows on a terminal how far a diagnosis is: every piece of its parallel work counts.
-class DiagnosisProgress {
- public:
-  explicit DiagnosisProgress(bool quiet) : line_("diagnose", quiet) {}
-
-  /// Called between the calls of Workers::run().
-  void tell(const std::string& what, double done, double then) {
-    what_ = what;
-    done_ = done;
-    then_ = then;
-    line_(what, done);
-  }
-  void count(int pieces, int of) { line_(what_, done_ + (then_ - done_) * pieces / of); }
-
- private:
-  ProgressLine line_;
-  std::string what_;
-  double done_ = 0, then_ = 0;
-};
-
-/// Runs the diagnosis with as many threads as asked for, and shows its progress on a terminal.
-estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
-                                   const estimator::DiagnosisInput& input,
-                                   estimator::DiagnosisOptions options) {
-  if (a.component.any()) options.tolerances.mass = kComponentMass;
-  DiagnosisProgress progress(a.quiet);
-  const Workers workers(
-      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
-      [&](const std::string&, int pieces, int of) { progress.count(pieces, of); });
-  options.parallel = [&](int count, const std::function<void(int)>& work) {
-    workers.run("", count, work);
-  };
-  options.within = [&](int count, const std::function<void(int)>& work) {
-    workers.run_within(count, work);
-  };
-  options.progress = [&](const std::string& what, double done, double then) {
-    progress.tell(what, done, then);
-  };
-  return diagnose(input.plant, input.segments, options);
-}
-
-bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {
-  std::error_code failure;
-  std::filesystem::create_directories(directory, failure);
-  if (failure) {
-    fmt::print(stderr, "{}: {}\n", directory, failure.message());
-    return false;
-  }
-  return write_file(directory + "/diagnosis.json", diagnosis_json(output)) &&
-         write_file(directory + "/model.toml", diagnosis_model_toml(output)) &&
-         write_file(directory + "/report.html", diagnosis_report(output));
-}
-
-}  // namespace
-
+/// Returns model.toml: the configuration with the identified values as its design and the effects
+/// as
+/// [[effect]].
 std::string diagnosis_model_toml(const DiagnoseOutput& o) {
   std::string error;
   const auto text = read_text_file(o.config.path, error);
   const estimator::Structure& s = o.plant.structure;
   const Eigen::VectorXd& theta = o.diagnosis.declared.theta;
   std::string out = "# Made by framewatch diagnose from " + o.config.path +
-                    ": identified values as the design, effects that were found.\n";
+                    ": the design has the identified values, [[effect]] the effects found.\n";
   out += without(without(text.value_or(""), "structure.design"), "effect");
   if (out.back() != '\n') out += "\n";
   out += "\n[structure.design]\n";
@@ -236,6 +137,106 @@ std::string diagnosis_model_toml(const DiagnoseOutput& o) {
   if (!effects.empty()) out += "\n" + effects_toml(effects, s, o.plant.axes);
   return out;
 }
+
+bool write_file(const std::string& path, const std::string& text) {
+  drivers::TextOutput out;
+  if (out.open(path) && out.write(text) && out.close()) return true;
+  fmt::print(stderr, "{}: {}\n", path, out.error());
+  return false;
+}
+
+/// Keeps freed memory in the heap: matrices of megabytes are allocated and freed by the thousand.
+void keep_freed_memory() {
+  constexpr int kLargest = 1 << 30;
+  ::mallopt(M_ARENA_MAX, 1);
+  ::mallopt(M_MMAP_THRESHOLD, kLargest);
+  ::mallopt(M_TRIM_THRESHOLD, kLargest);
+}
+
+/// Prints the problems. Returns true if there are any.
+bool print_all(const std::vector<std::string>& problems) {
+  for (const std::string& p : problems) fmt::print(stderr, "{}\n", printable_lines(p));
+  return !problems.empty();
+}
+
+std::vector<estimator::EffectKind> excluded_kinds(const std::vector<std::string>& names,
+                                                  std::vector<std::string>& problems) {
+  std::vector<estimator::EffectKind> out;
+  for (const std::string& name : names) {
+    if (const auto kind = estimator::find_effect(name))
+      out.push_back(*kind);
+    else
+      problems.push_back(fmt::format("--without {}: no effect has this name", name));
+  }
+  return out;
+}
+
+std::vector<DiagnoseRecord> read_records(const Config& config, const DiagnoseArguments& a,
+                                         std::vector<std::string>& problems) {
+  const bool both_given = !a.train.empty() && !a.holdout.empty();
+  const bool any_given = !a.train.empty() || !a.holdout.empty();
+  if (a.event.empty() ? !both_given : any_given)
+    problems.push_back("give --train and --holdout, or --event alone");
+  if (!a.event.empty() && !any_given) return read_event_records(config, a.event, problems);
+  std::vector<std::string> paths = a.train;
+  paths.insert(paths.end(), a.holdout.begin(), a.holdout.end());
+  return read_diagnose_records(config, paths, a.component, problems);
+}
+
+/// Shows the progress of a diagnosis on a terminal. Every piece of its parallel work counts.
+class DiagnosisProgress {
+ public:
+  explicit DiagnosisProgress(bool quiet) : line_("diagnose", quiet) {}
+
+  /// Called between the calls of Workers::run().
+  void set_step(const std::string& what, double done, double then) {
+    what_ = what;
+    done_ = done;
+    then_ = then;
+    line_(what, done);
+  }
+  void count(int pieces, int of) { line_(what_, done_ + (then_ - done_) * pieces / of); }
+
+ private:
+  ProgressLine line_;
+  std::string what_;
+  double done_ = 0, then_ = 0;
+};
+
+/// Runs the diagnosis with the requested number of threads, and shows its progress on a terminal.
+estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
+                                   const estimator::DiagnosisInput& input,
+                                   estimator::DiagnosisOptions options) {
+  if (a.component.any()) options.tolerances.mass = kComponentMass;
+  DiagnosisProgress progress(a.quiet);
+  const Workers workers(
+      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
+      [&](const std::string&, int pieces, int of) { progress.count(pieces, of); });
+  options.parallel = [&](int count, const std::function<void(int)>& work) {
+    workers.run("", count, work);
+  };
+  options.within = [&](int count, const std::function<void(int)>& work) {
+    workers.run_within(count, work);
+  };
+  options.progress = [&](const std::string& what, double done, double then) {
+    progress.set_step(what, done, then);
+  };
+  return diagnose(input.plant, input.segments, options);
+}
+
+bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {
+  std::error_code failure;
+  std::filesystem::create_directories(directory, failure);
+  if (failure) {
+    fmt::print(stderr, "{}: {}\n", directory, failure.message());
+    return false;
+  }
+  return write_file(directory + "/diagnosis.json", diagnosis_json(output)) &&
+         write_file(directory + "/model.toml", diagnosis_model_toml(output)) &&
+         write_file(directory + "/report.html", diagnosis_report(output));
+}
+
+}  // namespace
 
 int diagnose_command(const DiagnoseArguments& a) {
   keep_freed_memory();
@@ -261,7 +262,9 @@ int diagnose_command(const DiagnoseArguments& a) {
   const auto input = estimator::diagnosis_input(pipeline.structure, compared.axes, pipeline.design,
                                                 a.component, samples, pipeline.bending_nmprad);
   if (!input) {
-    fmt::print(stderr, "{}: the channels do not measure every motion that diagnose needs\n",
+    fmt::print(stderr,
+               "{}: its channels do not measure every motion that diagnose needs; see "
+               "docs/diagnosis.md\n",
                a.config);
     return kBadInput;
   }

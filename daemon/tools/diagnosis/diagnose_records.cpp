@@ -29,8 +29,8 @@ constexpr double kEverything_s = 1e9;
 constexpr double kSameInstant = 1e-6;  ///< of a sample
 
 constexpr double kMoving = 0.1;      ///< rms of the first second over that of all
-constexpr double kLead_s = 40;       ///< at most; half of the record at most
-constexpr double kTrainShare = 0.6;  ///< of a gap event's samples, the lead included
+constexpr double kLead_s = 40;       ///< longest lead, and at most half of the record
+constexpr double kTrainShare = 0.6;  ///< share of a gap event's samples, lead included
 
 Eigen::Index lead_of(Eigen::Index instants, double rate_hz) {
   return std::min(static_cast<Eigen::Index>(kLead_s * rate_hz), instants / 2);
@@ -153,9 +153,9 @@ void interpolate(const Config& config, const estimator::ComponentTest& component
   }
 }
 
-/// Takes the whole samples of the channels' delays off the columns, as an acquisition takes them
-/// off the stamps of a log. Instants that not every channel has are cut away.
-void take_whole_delays(const Config& config, estimator::RecordSamples& samples) {
+/// Shifts the columns by the whole samples of the channels' delays, as an acquisition shifts the
+/// stamps of a log. Cuts away instants that a channel does not have.
+void remove_whole_delays(const Config& config, estimator::RecordSamples& samples) {
   const auto& axes = config.pipeline.axes;
   Eigen::Index later = 0, earlier = 0;
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -173,7 +173,7 @@ void take_whole_delays(const Config& config, estimator::RecordSamples& samples) 
   samples.accel = Eigen::MatrixXd(samples.accel.middleRows(rows > 0 ? earlier : 0, rows));
 }
 
-/// Empty when there is a problem.
+/// Reads one record. Returns nullopt and adds to `problems` when it cannot be used.
 std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& path,
                                        const estimator::ComponentTest& component,
                                        std::vector<std::string>& problems) {
@@ -189,9 +189,9 @@ std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& 
       log ? from_log(config, out, problems) : from_record(config, component, out, problems);
   if (!read) return std::nullopt;
   interpolate(config, component, out, problems);
-  if (!log && problems.size() == before) take_whole_delays(config, out.samples);
+  if (!log && problems.size() == before) remove_whole_delays(config, out.samples);
   if (out.samples.accel.rows() < kMinInstants)
-    problems.push_back(fmt::format("{}: {} instants are too short, at least {} are needed", path,
+    problems.push_back(fmt::format("{}: too short: {} instants, at least {} are needed", path,
                                    out.samples.accel.rows(), kMinInstants));
   out.sha256 = sha256_of_file(path);
   if (problems.size() > before) return std::nullopt;
@@ -215,7 +215,7 @@ std::string names_of(const estimator::Plant& plant, const std::vector<ClockOffse
   return fmt::format("{}{}", fmt::join(names, ", "), more);
 }
 
-/// Seconds in which a segment's band has the fewest frequencies.
+/// Returns the seconds that a segment needs for the fewest frequencies in its band.
 double least_seconds(const estimator::RecordSegment& s) {
   return s.seconds() * static_cast<double>(estimator::kFewestBins) /
          static_cast<double>(std::max<Eigen::Index>(1, s.bins()));
@@ -233,8 +233,8 @@ void add_clock_problems(const std::string& path, const estimator::Plant& plant,
     for (const ClockOffset& o : offsets) mean += o.seconds / static_cast<double>(offsets.size());
     problems.push_back(
         fmt::format("{}: clocks apart: {} read {:.2f} s {} than {} in motion so slow that a "
-                    "building goes with its base; measure again with one clock, or give the later "
-                    "ones that delay_s",
+                    "building follows its base; measure again with one clock, or set delay_s of "
+                    "the later ones",
                     path, names_of(plant, offsets), std::abs(mean), mean > 0 ? "later" : "earlier",
                     plant.axes[static_cast<std::size_t>(key.first)].name));
   }
@@ -260,7 +260,7 @@ std::vector<DiagnoseRecord> read_diagnose_records(const Config& config,
 std::vector<DiagnoseRecord> read_event_records(const Config& config, const std::string& event,
                                                std::vector<std::string>& problems) {
   if (!config.gap || config.gap->store.empty()) {
-    problems.push_back(config.path + ": --event needs [gap] store: nothing is stored");
+    problems.push_back(config.path + ": --event needs [gap] store, which is not set");
     return {};
   }
   const std::string path = config.gap->store + "/gap-" + event + ".lcmlog";
@@ -321,8 +321,8 @@ void add_segment_problems(const std::string& path, const estimator::DiagnosisInp
                     path, s.bins(), estimator::kFewestBins, std::ceil(least_seconds(s))));
   else if (fault == estimator::SegmentFault::no_excitation)
     problems.push_back(path +
-                       ": no excitation: the floors' motion does not stand out of the sensors' "
-                       "noise; measure stronger motion, or with quieter sensors");
+                       ": no excitation: the floors' motion does not exceed the sensors' noise; "
+                       "measure stronger motion, or with quieter sensors");
   else if (!component.any())
     add_clock_problems(path, input.plant, s, problems);
 }

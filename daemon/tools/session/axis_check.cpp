@@ -15,7 +15,7 @@ constexpr double kSettled_s = 1, kMemory_s = 5;
 constexpr double kPulse_s = 0.25, kRest_s = 0.3, kRinging_s = 1;
 constexpr double kOverRinging = 2.5, kClear = 0.8, kFirst = 0.5;
 
-// Beyond these a person should look before the table moves.
+// Limits beyond which a user should check the channel before the table moves.
 constexpr double kMaxWhite = 2;        // rms over that of its noise; beyond it the building moves
 constexpr double kMaxNoise = 3;        // times the configured density
 constexpr double kMaxOffset_mps2 = 1;  // 6 degrees of tilt
@@ -165,7 +165,7 @@ std::string ChannelCheck::problem(std::size_t a, const ChannelResult& r) const {
   const double configured = axes_[a].noise_density;
   if (r.samples == 0) return r.saturated > 0 ? "saturated: every sample" : "no samples";
   if (r.saturated > 0) return fmt::format("saturated: {} samples", r.saturated);
-  if (r.stuck > 0 || r.rms == 0) return "its value stands still";
+  if (r.stuck > 0 || r.rms == 0) return "stuck: its value stands still";
   if (static_cast<double>(r.missing) > kMaxMissing_ratio * static_cast<double>(sets_))
     return fmt::format("{:.1f} % of its samples are missing",
                        100 * static_cast<double>(r.missing) / static_cast<double>(sets_));
@@ -173,9 +173,9 @@ std::string ChannelCheck::problem(std::size_t a, const ChannelResult& r) const {
     return fmt::format("{:.0f} % of its range is used", 100 * r.peak / r.range);
   const bool moves = r.rms > kMaxWhite * r.noise_density * std::sqrt(rate_hz_ / 2);
   if (!moves && configured > 0 && r.noise_density > kMaxNoise * configured)
-    return fmt::format("noise {:.1f} times what is configured", r.noise_density / configured);
+    return fmt::format("noise {:.1f} times the configured one", r.noise_density / configured);
   if (std::abs(r.offset) > kMaxOffset_mps2)
-    return fmt::format("rests at {:+.2f} m/s^2: not level, or an offset to configure", r.offset);
+    return fmt::format("rests at {:+.2f} m/s^2: level it or configure its offset", r.offset);
   return "";
 }
 

@@ -22,10 +22,10 @@ namespace {
 
 constexpr double kCheck_s = 3, kMaxBefore_s = 62;  // the longest pre-trigger and its slack
 constexpr std::size_t kMaxBeforeBytes = std::size_t{64} << 20;
-constexpr std::int64_t kAfter_us = 500'000;       // estimates of the last samples are on their way
-constexpr std::int64_t kSilence_us = 10'000'000;  // over its length, of a session without samples
+constexpr std::int64_t kAfter_us = 500'000;       // for the estimates of the last samples to arrive
+constexpr std::int64_t kSilence_us = 10'000'000;  // a session without samples ends so late
 constexpr std::int64_t kTroubleEvery_us = 10'000'000;
-constexpr std::size_t kMaxVerb = 40;  // bytes of one that is not known
+constexpr std::size_t kMaxVerb = 40;  // bytes shown of an unknown verb
 constexpr double kSlack_s = 0.1;
 constexpr double kTapOverRest = 8, kMinTap_mps2 = 0.05;
 
@@ -34,7 +34,7 @@ bool has_lcm_axes(const Config& config) {
                      [](const AxisSource& s) { return s.can.empty(); });
 }
 
-/// The base's, or all when it has none.
+/// Returns the horizontal axes of the base, or all horizontal axes if the base has no sensor.
 std::vector<std::size_t> axes_that_trigger(const std::vector<estimator::SensorAxis>& axes) {
   std::vector<std::size_t> base, all;
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -130,15 +130,14 @@ void Recorder::look_for_tap(const std::vector<double>& distance) {
   const auto tap = taps_.push(distance, threshold);
   if (!tap) return;
   if (tap->axis < 0) {
-    news_ = "a tap that several sensors felt alike: tap next to one sensor";
+    news_ = "several sensors felt this tap alike: tap next to one sensor";
     return;
   }
   const auto axis = static_cast<std::size_t>(tap->axis);
   polarity_[axis] = tap->sign;
   const auto left = std::count(polarity_.begin(), polarity_.end(), 0);
   news_ = fmt::format("{}: {}, {:.2f} m/s^2; {} not tapped yet", config_.pipeline.axes[axis].name,
-                      tap->sign > 0 ? "positive, as it should be" : "NEGATIVE: reversed", tap->peak,
-                      left);
+                      tap->sign > 0 ? "positive, correct" : "NEGATIVE: reversed", tap->peak, left);
   if (left == 0) state_ = RecorderState::waiting;
 }
 
@@ -201,14 +200,14 @@ void Recorder::obey(const session_command_t& c, const std::string& user, std::in
   else if (c.verb == "stop")
     refused_ = stop("command", now_us);
   else if (c.verb == "arm" && !(c.trigger_mps2 > 0))
-    refused_ = "arming needs a trigger level";
+    refused_ = "arm needs a trigger level";
   else if (c.verb == "start" && c.trigger_mps2 > 0)
-    refused_ = "starting at once needs no trigger level";
+    refused_ = "start takes no trigger level: use arm";
   else if (c.verb == "arm" || c.verb == "start")
     refused_ = begin(request, now_us, user);
   else
     refused_ = "no such command: " + printable(c.verb, kMaxVerb);
-  if (refused_.empty()) log(LogLevel::notice, fmt::format("{}, says {}", c.verb, user));
+  if (refused_.empty()) log(LogLevel::notice, fmt::format("{}, by {}", c.verb, user));
 }
 
 void Recorder::finished(const std::string& report, const std::string& news) {
@@ -230,12 +229,12 @@ std::string Recorder::open(std::int64_t now_us, const std::string& triggered_by)
   if (!files->open(sessions_ + "/" + folder, has_lcm_axes(config_), !config_.can.empty(), problem))
     return problem;
   folder_ = folder;
-  // The trigger is seen in an instant that is closed, up to lateness_s after its samples came.
+  // The trigger is found in a closed instant, up to lateness_s after its samples arrived.
   const double back_s =
       session_.request.pre_trigger_s + config_.pipeline.options.lateness_s + kSlack_s;
   const std::int64_t from_us = now_us - static_cast<std::int64_t>(1e6 * back_s);
   const bool before = !triggered_by.empty();
-  // What names the samples and the parameters comes first.
+  // Tables that name samples and parameters come first.
   for (auto& [channel, table] : tables_) {
     KeptMessage first = table;
     first.received_us = before ? from_us : now_us;
@@ -299,27 +298,27 @@ void Recorder::tick(std::int64_t now_us) {
   if (length_s > 0 && close_at_us_ == 0 &&
       now_us > session_.began_us + static_cast<std::int64_t>(1e6 * length_s) + kSilence_us)
     (void)stop("no samples", now_us);
-  look_at_disk(now_us);
+  check_disk(now_us);
   if (close_at_us_ != 0 && now_us >= close_at_us_) close();
 }
 
-/// Numbers never seen, of messages and of CAN frames.
+/// Returns the messages and CAN frames lost, by their sequence numbers.
 std::int64_t Recorder::lost() const {
   std::int64_t sum = intake_.lost();
   for (std::size_t n = 0; n < config_.can.nodes.size(); ++n) sum += can_.node(n).lost;
   return sum;
 }
 
-void Recorder::look_at_disk(std::int64_t now_us) {
+void Recorder::check_disk(std::int64_t now_us) {
   const std::string why = log_->trouble();
   if (why.empty() && disk_failing_) {
     disk_failing_ = false;
-    news_ = fmt::format("the disk takes what is recorded again: {} messages were dropped",
+    news_ = fmt::format("the recording is written to disk again; {} messages were dropped",
                         log_->dropped());
   } else if (!why.empty() && now_us >= trouble_said_us_) {
     disk_failing_ = true;
     trouble_said_us_ = now_us + kTroubleEvery_us;
-    news_ = "the disk does not take what is recorded: " + why;
+    news_ = "cannot write the recording: " + why;
     log(LogLevel::error, news_);
   }
 }

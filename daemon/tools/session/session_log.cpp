@@ -38,11 +38,11 @@ bool SessionLog::open(const std::string& folder, bool lcm, bool can, std::string
 void SessionLog::write(const KeptMessage& m) {
   messages_ += m.kind != MessageKind::estimate;
   if (m.kind == MessageKind::frame) {
-    (void)can_.append(m.bytes);  // counted
+    (void)can_.append(m.bytes);  // failures are counted by the file
     return;
   }
   const bool raw = m.kind == MessageKind::raw;
-  // A number that is missing in the log is an event that was dropped.
+  // A dropped event leaves its number missing in the log.
   std::int64_t& number = raw ? raw_events_ : estimate_events_;
   event_.clear();
   drivers::append_log_event(event_, number++, m.received_us, m.channel, m.bytes.data(),

@@ -1,4 +1,4 @@
-#include "daemon/tools/diagnosis/compared_channels.h"
+#include "daemon/tools/diagnosis/diagnose_records.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "daemon/tools/diagnosis/compared_channels.h"
 #include "daemon/tools/diagnosis/diagnose_records.h"
 #include "tests/support/config_fixture.h"
 #include "tests/support/temporary.h"

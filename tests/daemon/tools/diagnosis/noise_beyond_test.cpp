@@ -1,4 +1,4 @@
-#include "daemon/tools/diagnosis/noise_beyond.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
 
 #include <cmath>
 

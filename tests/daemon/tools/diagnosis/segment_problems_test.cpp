@@ -1,4 +1,4 @@
-#include "daemon/tools/diagnosis/segment_problems.h"
+#include "daemon/tools/diagnosis/diagnose_records.h"
 
 #include <gtest/gtest.h>
 
