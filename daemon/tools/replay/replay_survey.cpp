@@ -112,21 +112,20 @@ void ReplaySurvey::add_record(ReplayInput input) {
   const drivers::Record& record = input.record;
   for (const std::string& note : record.notes) notes_.push_back(input.path + ": " + note);
   const auto& axes = config_.pipeline.axes;
-  int found = 0;
-  std::string others;
+  std::vector<std::string> others;
   for (const std::string& name : record.names) {
     const auto at = std::find_if(axes.begin(), axes.end(), [&](const estimator::SensorAxis& axis) {
       return axis.name == name;
     });
     input.axis_of_column.push_back(at == axes.end() ? -1 : static_cast<int>(at - axes.begin()));
-    found += at != axes.end();
-    if (at == axes.end()) others += (others.empty() ? "" : ", ") + name;
+    if (at == axes.end()) others.push_back(name);
   }
-  if (found == 0)
+  if (others.size() == record.names.size())
     problems_.push_back(fmt::format("{}: no column is named like a channel of {}; it has {}",
-                                    input.path, config_.path, others));
+                                    input.path, config_.path, joined(others)));
   else if (!others.empty())
-    notes_.push_back(fmt::format("{}: ignored columns without a channel: {}", input.path, others));
+    notes_.push_back(
+        fmt::format("{}: ignored columns without a channel: {}", input.path, joined(others)));
   for (const std::string& difference : header_differences(config_, record))
     notes_.push_back(fmt::format("{}: {}", input.path, difference));
   check_rate(input.path, record.rate_hz);
@@ -338,9 +337,7 @@ void ReplaySurvey::finish() {
   if (!only_logs || !problems_.empty()) return;
   if (declared_)
     problems_.push_back("--unit, --step and the like are for record files: a log contains them");
-  std::string names;
-  for (const std::string& name : any_raw_ ? counts_.missing() : intake().binding().unbound())
-    names += (names.empty() ? "" : ", ") + name;
+  const std::string names = joined(any_raw_ ? counts_.missing() : intake().binding().unbound());
   if (!names.empty())
     notes_.push_back(
         fmt::format("channels of {} that no message carries: {}", config_.path, names));

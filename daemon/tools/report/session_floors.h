@@ -51,9 +51,9 @@ std::string floors_json(const SessionFloors& floors, const Config& config,
                         const SessionMotion& motion);
 
 /// Computes the peak drifts of a whole session with their errors, and the damage they may have
-/// done. The stiffness is the median of the windows of the strong motion, or of all windows when
-/// the strong motion has none. Noise that is not configured is measured in the record. changes: a
-/// lasting loss among them restricts the placard.
+/// done. The stiffness is the median of the windows of the strong motion, or of all windows if no
+/// window lies in it. Noise that is not configured is measured in the record. changes: a lasting
+/// loss among them restricts the placard.
 DriftReport session_drifts(const Config& config, const SessionMotion& motion,
                            const SessionEstimates& estimates,
                            const std::vector<ElementChange>& changes);

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/simulate/random.h"
 #include "estimator/state/archive.h"
 #include "estimator/watch/mean_temperature.h"

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/monitor/estimates/parameter_summary.h"
-#include "daemon/tools/lab/tall_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "daemon/tools/replay/replay_command.h"
 #include "daemon/tools/report/report_command.h"
 #include "daemon/tools/report/session_report.h"
