@@ -164,8 +164,11 @@ std::string row(const std::vector<std::string>& cells) {
   return out + "\n";
 }
 
-std::string table(const std::vector<std::string>& head) {
-  return row(head) + row(std::vector<std::string>(head.size(), "---"));
+std::string table(const std::vector<std::string>& head,
+                  const std::vector<std::vector<std::string>>& rows = {}) {
+  std::string out = row(head) + row(std::vector<std::string>(head.size(), "---"));
+  for (const std::vector<std::string>& cells : rows) out += row(cells);
+  return out;
 }
 
 std::string limit_text(const std::string& name, int kind) {
@@ -232,35 +235,12 @@ std::string excitation(const Robustness& r) {
     for (int kind = 0; kind < 3; ++kind) cells.push_back(percent_1(sweep.wrong_ratio(kind)));
     out += row(cells);
   }
-  out +=
-      "\nSensor noise alone:\n\n" + table({"building", "hours", "windows", "windows with a value"});
-  for (const Silence& s : r.silences)
-    out += row({s.name + (s.noise_configured ? "" : ", noise not configured"),
-                fmt::format("{:g}", s.hours), fmt::format("{}", s.windows),
-                fmt::format("{}", s.published)});
+  out += "\nSensor noise alone:\n\n" +
+         table({"building", "hours", "windows", "windows with a value"}, silence_rows(r.silences));
   return out + fmt::format(
                    "\nA bias of 0.05 m/s^2 on every channel with a thermal ramp of 0.001 m/s^2 per "
                    "s changes k by at most {:.1e}.\n\n",
                    r.change_by_bias);
-}
-
-std::string few_sensors(const std::vector<FewSensorsRow>& rows) {
-  std::string out = table({"sensors", "k", "95 % of k", "c", "95 % of c", "must (k, c)"});
-  for (const FewSensorsRow& r : rows)
-    out += row({r.name, percent(r.errors.stiffness.quantile(0.5)),
-                percent(r.errors.stiffness.quantile(0.95)), percent(r.errors.damping.quantile(0.5)),
-                percent(r.errors.damping.quantile(0.95)), r.must()});
-  return out;
-}
-
-std::string wrong_models(const std::vector<FewSensorsRow>& rows) {
-  std::string out = table(
-      {"building", "error of k", "published", "window's error holds", "with the model's error"});
-  for (const FewSensorsRow& r : rows)
-    out += row({r.name, percent(r.errors.stiffness.quantile(0.5)),
-                percent(r.errors.stiffness.published_ratio()),
-                percent(r.errors.stiffness.coverage_ratio()), percent(r.errors.held_ratio())});
-  return out + "\n";
 }
 
 std::string promise_list(const Reproduction& all) {
@@ -315,8 +295,14 @@ std::string accuracy_markdown(const Reproduction& all) {
   }
   if (all.robustness) out += kExcitation + excitation(*all.robustness);
   if (!all.few_sensors.empty())
-    out += fmt::format(kFewSensors, all.seeds) + few_sensors(all.few_sensors) + kWrongModels +
-           wrong_models(all.wrong_models);
+    out += fmt::format(kFewSensors, all.seeds) +
+           table({"sensors", "k", "95 % of k", "c", "95 % of c", "must (k, c)"},
+                 few_sensors_rows(all.few_sensors)) +
+           kWrongModels +
+           table({"building", "error of k", "published", "window's error holds",
+                  "with the model's error"},
+                 wrong_model_rows(all.wrong_models)) +
+           "\n";
   return out + promise_list(all) + kLimits;
 }
 

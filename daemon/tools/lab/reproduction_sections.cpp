@@ -14,6 +14,12 @@
 namespace framewatch::daemon {
 namespace {
 
+/// Escapes the names in the first column.
+std::vector<std::vector<std::string>> html_rows(std::vector<std::vector<std::string>> rows) {
+  for (std::vector<std::string>& row : rows) row.front() = html_text(row.front());
+  return rows;
+}
+
 /// Returns mean, median and number of the windows that have a value.
 std::vector<std::string> window_cells(const std::vector<double>& all, double reference) {
   std::vector<double> values;
@@ -135,13 +141,9 @@ std::string robustness_section(const Robustness& r, int seeds) {
   out += html_table({"sweep", "k published", "of these off by > 5 %", "G published",
                      "off by > 25 %", "c published", "off by > 25 %"},
                     rows);
-  rows.clear();
-  for (const Silence& s : r.silences)
-    rows.push_back({html_text(s.name + (s.noise_configured ? "" : ", noise not configured")),
-                    fmt::format("{:g}", s.hours), fmt::format("{}", s.windows),
-                    fmt::format("{}", s.published)});
   out += "<h3>Sensor noise alone</h3>\n" +
-         html_table({"building", "hours", "windows", "windows with a value"}, rows);
+         html_table({"building", "hours", "windows", "windows with a value"},
+                    html_rows(silence_rows(r.silences)));
   out += fmt::format(
       "<p>A bias of 0.05 m/s² on every channel with a thermal ramp of 0.001 m/s² "
       "per s changes k by at most {:.1e} (Table 1, exact motion).</p>\n",
@@ -188,28 +190,44 @@ std::string table_section(const TableTest& test) {
   return out;
 }
 
+std::vector<std::vector<std::string>> silence_rows(const std::vector<Silence>& silences) {
+  std::vector<std::vector<std::string>> out;
+  for (const Silence& s : silences)
+    out.push_back({s.name + (s.noise_configured ? "" : ", noise not configured"),
+                   fmt::format("{:g}", s.hours), fmt::format("{}", s.windows),
+                   fmt::format("{}", s.published)});
+  return out;
+}
+
+std::vector<std::vector<std::string>> few_sensors_rows(const std::vector<FewSensorsRow>& rows) {
+  std::vector<std::vector<std::string>> out;
+  for (const FewSensorsRow& r : rows)
+    out.push_back({r.name, percent(r.errors.stiffness.quantile(0.5)),
+                   percent(r.errors.stiffness.quantile(0.95)),
+                   percent(r.errors.damping.quantile(0.5)),
+                   percent(r.errors.damping.quantile(0.95)), r.must()});
+  return out;
+}
+
+std::vector<std::vector<std::string>> wrong_model_rows(const std::vector<FewSensorsRow>& rows) {
+  std::vector<std::vector<std::string>> out;
+  for (const FewSensorsRow& r : rows)
+    out.push_back({r.name, percent(r.errors.stiffness.quantile(0.5)),
+                   percent(r.errors.stiffness.published_ratio()),
+                   percent(r.errors.stiffness.coverage_ratio()), percent(r.errors.held_ratio())});
+  return out;
+}
+
 std::string few_sensors_section(const Reproduction& all) {
-  std::vector<std::vector<std::string>> rows;
-  for (const FewSensorsRow& r : all.few_sensors)
-    rows.push_back({html_text(r.name), percent(r.errors.stiffness.quantile(0.5)),
-                    percent(r.errors.stiffness.quantile(0.95)),
-                    percent(r.errors.damping.quantile(0.5)),
-                    percent(r.errors.damping.quantile(0.95)), r.must()});
-  std::string out =
-      "<h2>Few sensors</h2>\n" + command_html("few-sensors", all.seeds) +
-      "<p>Groups of stories of a plane building of 20 stories, 5-s windows.</p>\n" +
-      html_table({"sensors", "k", "95 % of k", "c", "95 % of c", "must (k, c)"}, rows);
-  rows.clear();
-  for (const FewSensorsRow& r : all.wrong_models)
-    rows.push_back({html_text(r.name), percent(r.errors.stiffness.quantile(0.5)),
-                    percent(r.errors.stiffness.published_ratio()),
-                    percent(r.errors.stiffness.coverage_ratio()), percent(r.errors.held_ratio())});
-  return out +
+  return "<h2>Few sensors</h2>\n" + command_html("few-sensors", all.seeds) +
+         "<p>Groups of stories of a plane building of 20 stories, 5-s windows.</p>\n" +
+         html_table({"sensors", "k", "95 % of k", "c", "95 % of c", "must (k, c)"},
+                    html_rows(few_sensors_rows(all.few_sensors))) +
          "<h3>Wrong models</h3>\n<p>Share of published stiffnesses whose 95 % interval "
          "holds the truth.</p>\n" +
          html_table({"building", "error of k", "published", "by the window's error",
                      "with the model's error"},
-                    rows);
+                    html_rows(wrong_model_rows(all.wrong_models)));
 }
 
 std::string value_and_error(double value, double truth) {

@@ -15,6 +15,11 @@ std::string row_table(const std::vector<const AccuracyRow*>& rows);
 /// "3505 (+0.14 %)".
 std::string value_and_error(double value, double truth);
 
+/// Return the rows of the tables of silence, few sensors and wrong models, as plain text.
+std::vector<std::vector<std::string>> silence_rows(const std::vector<Silence>& silences);
+std::vector<std::vector<std::string>> few_sensors_rows(const std::vector<FewSensorsRow>& rows);
+std::vector<std::vector<std::string>> wrong_model_rows(const std::vector<FewSensorsRow>& rows);
+
 /// Has Figure 3 or 5, the building's rows and every parameter of its first motion.
 std::string building_section(const BuildingReproduction& building, const Reproduction& all);
 /// Have Figures 6 and 7. Precondition: all.noise, all.denoise.
