@@ -105,8 +105,7 @@ std::string without(const std::string& text, const std::string& name) {
 }
 
 /// Returns model.toml: the configuration with the identified values as its design and the effects
-/// as
-/// [[effect]].
+/// as [[effect]].
 std::string diagnosis_model_toml(const DiagnoseOutput& o) {
   std::string error;
   const auto text = read_text_file(o.config.path, error);

@@ -370,10 +370,10 @@ std::vector<Check> check_expectations(const Expectations& expectations,
 
 std::string written_expectations(const ReplayOutcome& found, const std::string& command) {
   std::string out = fmt::format(
-      "# What this replay must give: framewatch replay ... --expect THIS_FILE\n"
+      "# Expected results of a replay: framewatch replay ... --expect THIS_FILE\n"
       "# First written by: {}\n"
       "# Keys and units: docs/configuration.md, expectation files. Tolerances are proposals.\n"
-      "reason = \"\"  # to fill in: why are these numbers right?\n\n[counts]\n",
+      "reason = \"\"  # fill in: why are these numbers right?\n\n[counts]\n",
       command);
   for (const auto& [name, count] : found.counts)
     if (name != std::string("foreign")) out += fmt::format("{} = {}\n", name, count);

@@ -112,8 +112,8 @@ std::string text(const estimator::ParameterTable& table, const Report& report) {
       fmt::format("{:.3f} s to {:.3f} s: {}\n", report.from_s, report.to_s, status_word(r.status));
   if (!r.has_values()) return out;
   out += fmt::format(
-      "{} steps, {:.2f} to {:.2f} Hz, log-likelihood {:.6g}; misfit {:.3g} of what sensor noise "
-      "explains\n",
+      "{} steps, {:.2f} to {:.2f} Hz, log-likelihood {:.6g}; misfit {:.3g} times what sensor "
+      "noise explains\n",
       r.iterations, r.band.low_hz, r.band.high_hz, r.log_likelihood, r.misfit_ratio);
   for (const std::string& name : report.silent)
     out += fmt::format("channel {} has no samples and was left out\n", printable(name));

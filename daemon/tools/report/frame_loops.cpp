@@ -114,7 +114,7 @@ FrameLoops frame_loops(const estimator::Structure& s, const SessionMotion& m, co
   for (int story = 1; story <= s.stories && !shared; ++story)
     for (int p = 0; p < s.panels(); ++p)
       if (!std::isfinite(theta[table.panel_stiffness(story, p)]))
-        out.reason = "a floor panel's stiffness is not known, so its force is not";
+        out.reason = "a floor panel's stiffness is not known, so its force is unknown";
   if (!out.reason.empty()) return out;
 
   const Index dofs = s.degrees_of_freedom();

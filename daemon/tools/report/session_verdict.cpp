@@ -45,7 +45,7 @@ std::string what(const SessionReport& r, const ElementChange& c) {
   const std::string element = element_words(r.estimates.table, c.parameter);
   const bool several = element.rfind("stories", 0) == 0;
   if (!c.sized())
-    return element + (several ? " are" : " is") + " changing, how much is not known yet";
+    return element + (several ? " are" : " is") + " changing, by an amount not known yet";
   const std::string size =
       fmt::format("{:.1f} % (+-{:.1f} %)", 100 * std::abs(c.ratio), error_percent(c));
   return element + (several ? " have " : " has ") +
@@ -212,7 +212,7 @@ std::string change_table(const SessionReport& r) {
   return html_table({"element", "parameter", "unit", "before", "after", "change, %", "since, s"},
                     rows) +
          (announced
-              ? "<p>The change is the announced one, against the baseline and at like amplitude; "
+              ? "<p>The change is the announced one, against the baseline and at equal amplitude; "
                 "before and after are means of this session's windows.</p>\n"
               : "");
 }
@@ -257,10 +257,10 @@ std::string verdict_sentence(const SessionReport& r) {
   if (const event_t* open = open_alarm(r); changes.empty() && open != nullptr)
     return fmt::format("An alarm is open at the end: {}.", open->message);
   if (changes.empty() && r.judged.empty() && !r.recoveries.empty())
-    return "Whether the building has changed cannot be said: after its strong motion there was "
+    return "It is unknown whether the building has changed: after its strong motion there was "
            "only weaker motion, in which frames are stiffer.";
   if (changes.empty() && r.judged.empty())
-    return "Whether the building has changed cannot be said: it did not move enough, or not for "
+    return "It is unknown whether the building has changed: it did not move enough, or not for "
            "long enough.";
   if (changes.empty())
     return fmt::format(

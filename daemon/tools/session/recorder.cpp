@@ -22,8 +22,9 @@ namespace {
 
 constexpr double kCheck_s = 3, kMaxBefore_s = 62;  // the longest pre-trigger and its slack
 constexpr std::size_t kMaxBeforeBytes = std::size_t{64} << 20;
-constexpr std::int64_t kAfter_us = 500'000;       // for the estimates of the last samples to arrive
-constexpr std::int64_t kSilence_us = 10'000'000;  // a session without samples ends so late
+constexpr std::int64_t kAfter_us = 500'000;  // for the estimates of the last samples to arrive
+constexpr std::int64_t kSilence_us =
+    10'000'000;  // from the length's end of a session without samples
 constexpr std::int64_t kTroubleEvery_us = 10'000'000;
 constexpr std::size_t kMaxVerb = 40;  // bytes shown of an unknown verb
 constexpr double kSlack_s = 0.1;
