@@ -9,7 +9,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/tools/lab/few_sensors.h"
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/simulate/ground_motion.h"
 #include "estimator/simulate/linear_response.h"

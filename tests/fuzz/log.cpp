@@ -3,7 +3,7 @@
 
 #include "daemon/monitor/estimates/session_estimates.h"
 #include "daemon/monitor/history/raw_history_reader.h"
-#include "daemon/tools/replay/log_survey.h"
+#include "daemon/tools/replay/repair_command.h"
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/lcm_log.h"
 #include "tests/fuzz/message_sequence.h"

@@ -1,6 +1,6 @@
 #include "tests/support/paper_buildings.h"
 
-#include "daemon/tools/lab/paper_motions.h"
+#include "daemon/tools/lab/data_files.h"
 #include "tests/support/data.h"
 
 namespace framewatch::test {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/simulate/ground_motion.h"
 
 namespace framewatch::test {

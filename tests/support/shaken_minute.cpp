@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "daemon/tools/lab/accuracy_trial.h"
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/sensor_model.h"
 

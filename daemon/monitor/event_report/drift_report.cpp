@@ -32,8 +32,8 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
       return fmt::format("the drift of story {} is not known", drift.story);
     case PlacardReason::interruption:
       return fmt::format(
-          "the record is interrupted in the strong motion of story {}: its peak drift may be "
-          "larger than the {} that was seen",
+          "the drift of story {} is unknown in part of its strong motion: its peak may be larger "
+          "than the {} that was seen",
           drift.story, drift_words(drift.ratio));
     default:
       return fmt::format(
@@ -121,7 +121,8 @@ std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
         "alone is not in its error.");
   if (!interrupted.empty())
     out.push_back(
-        fmt::format("The record is interrupted in the strong motion of {}: the peak may be larger.",
+        fmt::format("The drift of {} is unknown in part of the strong motion, because the record "
+                    "begins in it or samples are missing: the peak may be larger.",
                     stories_words(interrupted)));
   if (!unknown.empty())
     out.push_back(

@@ -150,7 +150,7 @@ std::string drift_line(const Known& k, const estimator::Structure& s, int story)
   return fmt::format("Story {}: {} ({:.2f} mm) in frame {}{}{}", story, drift_with_error(d),
                      1e3 * d.ratio * s.story_height[i], s.frame_name(d.frame),
                      d.measured ? "" : ", computed",
-                     d.interrupted_at_peak() ? "; the record has a gap at the peak" : "");
+                     d.interrupted_at_peak() ? "; unknown in part of the strong motion" : "");
 }
 
 /// Every story, downward; of a tall building those that swayed most.

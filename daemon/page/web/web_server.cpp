@@ -23,7 +23,7 @@
 #include "daemon/page/web/web_files.h"
 #include "daemon/page/web/web_sessions.h"
 #include "daemon/page/web/web_socket.h"
-#include "daemon/tools/session/session_command.h"
+#include "daemon/tools/session/session_desk.h"
 
 namespace framewatch::daemon {
 namespace {

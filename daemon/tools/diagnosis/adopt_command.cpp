@@ -11,6 +11,7 @@
 #include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
+
 int adopt(const AdoptArguments& a) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(a.config, problems);
@@ -18,7 +19,7 @@ int adopt(const AdoptArguments& a) {
   const std::optional<std::string> text = read_text_file(a.model, error);
   std::optional<estimator::GapModel> model;
   if (config && (!config->gap || config->gap->model_path.empty()))
-    problems.push_back({a.config, "has no [gap] model: no place to put one"});
+    problems.push_back({a.config, "has no [gap] model: set the path to copy the model to"});
   else if (!text)
     problems.push_back({a.model, error});
   else if (config)

@@ -9,8 +9,8 @@ struct AdoptArguments {
   bool quiet = false;
 };
 
-/// framewatch adopt: copies a model of the configuration's building to its [gap] model path. Exit
-/// code: 0 done; 2 bad usage, configuration or model, nothing is changed.
+/// Runs `framewatch adopt`: copies a model of the configuration's building to its [gap] model path.
+/// Returns the exit code: 0 done; 2 bad usage, configuration or model, nothing is changed.
 int adopt(const AdoptArguments& arguments);
 
 }  // namespace framewatch::daemon

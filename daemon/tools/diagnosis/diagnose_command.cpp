@@ -1,7 +1,5 @@
 #include "daemon/tools/diagnosis/diagnose_command.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -11,28 +9,133 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/base/workers.h"
 #include "daemon/config/sections/config_problems.h"
-#include "daemon/tools/diagnosis/compared_channels.h"
+#include "daemon/config/sections/effects.h"
 #include "daemon/tools/diagnosis/diagnose_json.h"
-#include "daemon/tools/diagnosis/diagnose_model.h"
-#include "daemon/tools/diagnosis/diagnose_output.h"
 #include "daemon/tools/diagnosis/diagnose_records.h"
 #include "daemon/tools/diagnosis/diagnose_report.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
-#include "daemon/tools/diagnosis/segment_problems.h"
 #include "drivers/files/text_output.h"
+#include "estimator/diagnose/trials/catalogue_form.h"
+#include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr int kGapRemains = 1;
-constexpr double kComponentMass = 0.1;  ///< tolerance
+constexpr double kComponentMass = 0.1;  ///< tolerance of a component test's mass
+constexpr double kMin = 1e-6;           ///< least value of a design, which must be positive
+
+/// Returns [story][frame] lists of stiffness or damping, as in [structure.design].
+std::string grid(const estimator::ParameterTable& table, const Eigen::VectorXd& theta, int stories,
+                 int from, int count, bool damping) {
+  std::string out = "[";
+  for (int story = 1; story <= stories; ++story) {
+    out += story > 1 ? ", [" : "[";
+    for (int f = from; f < from + count; ++f) {
+      const int at = damping ? table.frame_damping(story, f) : table.frame_stiffness(story, f);
+      out += fmt::format("{}{:.9g}", f > from ? ", " : "", std::max(theta[at], kMin));
+    }
+    out += "]";
+  }
+  return out + "]";
+}
+
+std::string panels(const estimator::Structure& s, const estimator::ParameterTable& table,
+                   const Eigen::VectorXd& theta, bool damping) {
+  std::string out = "[";
+  for (int story = 1; story <= s.stories; ++story) {
+    out += story > 1 ? ", [" : "[";
+    for (int l = 0; l < s.n() - 1; ++l) {
+      out += l > 0 ? ", [" : "[";
+      for (int j = 0; j < s.m() - 1; ++j) {
+        const int panel = l * (s.m() - 1) + j;
+        const int at =
+            damping ? table.panel_damping(story, panel) : table.panel_stiffness(story, panel);
+        out += fmt::format("{}{:.9g}", j > 0 ? ", " : "", std::max(theta[at], kMin));
+      }
+      out += "]";
+    }
+    out += "]";
+  }
+  return out + "]";
+}
+
+/// Returns the rotational stiffness at every floor of frames whose bending is part of the design.
+std::string bending(const estimator::Plant& plant, const estimator::Model& model) {
+  std::string out;
+  for (const estimator::ModelEffect& e : model.effects) {
+    const std::size_t along = e.place.direction == estimator::Direction::x ? 0 : 1;
+    if (e.form != estimator::LawForm::bending || !(plant.bending[along] > 0)) continue;
+    const double flexibility = std::max(e.parameters[0].plain(), kMin / plant.bending[along]);
+    out += along == 0 ? "krx_nmprad = [" : "kry_nmprad = [";
+    for (int floor = 0; floor < plant.structure.stories; ++floor)
+      out += fmt::format("{}{:.9g}", floor > 0 ? ", " : "",
+                         plant.bending.of_floor(along, static_cast<std::size_t>(floor)) /
+                             plant.bending[along] / flexibility);
+    out += "]\n";
+  }
+  return out;
+}
+
+/// Removes the table [name] or the tables [[name]] from a TOML text.
+std::string without(const std::string& text, const std::string& name) {
+  std::string out;
+  bool inside = false;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    const std::string line = text.substr(at, end - at);
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (first != std::string::npos && line[first] == '[')
+      inside = line.compare(first, name.size() + 2, "[" + name + "]") == 0 ||
+               line.compare(first, name.size() + 4, "[[" + name + "]]") == 0;
+    if (!inside) out += line;
+    at = end;
+  }
+  return out;
+}
+
+/// Returns model.toml: the configuration with the identified values as its design and the effects
+/// as [[effect]].
+std::string diagnosis_model_toml(const DiagnoseOutput& o) {
+  std::string error;
+  const auto text = read_text_file(o.config.path, error);
+  const estimator::Structure& s = o.plant.structure;
+  const Eigen::VectorXd& theta = o.diagnosis.declared.theta;
+  std::string out = "# Made by framewatch diagnose from " + o.config.path +
+                    ": the design has the identified values, [[effect]] the effects found.\n";
+  out += without(without(text.value_or(""), "structure.design"), "effect");
+  if (out.back() != '\n') out += "\n";
+  out += "\n[structure.design]\n";
+  const estimator::ParameterTable& table = o.plant.table;
+  for (const bool damping : {false, true}) {
+    if (s.n() > 0)
+      out += fmt::format("{} = {}\n", damping ? "cx_nspm" : "kx_npm",
+                         grid(table, theta, s.stories, 0, s.n(), damping));
+    if (s.m() > 0)
+      out += fmt::format("{} = {}\n", damping ? "cy_nspm" : "ky_npm",
+                         grid(table, theta, s.stories, s.n(), s.m(), damping));
+    if (s.panels() > 0 && !o.plant.stiff_floors)
+      out += fmt::format("{} = {}\n", damping ? "gc" : "gk", panels(s, table, theta, damping));
+  }
+  out += bending(o.plant, o.diagnosis.declared);
+  std::vector<estimator::Effect> effects = estimator::modal_damping_effects(o.diagnosis.declared);
+  for (const auto* list : {&o.diagnosis.known, &o.diagnosis.effects})
+    for (const estimator::FoundEffect& f : *list)
+      if (f.chosen.kind != estimator::EffectKind::modal_damping)
+        effects.push_back(catalogue_effect(o.plant, o.segments, f, o.diagnosis.declared));
+  if (!effects.empty()) out += "\n" + effects_toml(effects, s, o.plant.axes);
+  return out;
+}
 
 bool write_file(const std::string& path, const std::string& text) {
   drivers::TextOutput out;
@@ -49,7 +152,7 @@ void keep_freed_memory() {
   ::mallopt(M_TRIM_THRESHOLD, kLargest);
 }
 
-/// Whether there are any.
+/// Prints the problems. Returns true if there are any.
 bool print_all(const std::vector<std::string>& problems) {
   for (const std::string& p : problems) fmt::print(stderr, "{}\n", printable_lines(p));
   return !problems.empty();
@@ -72,20 +175,20 @@ std::vector<DiagnoseRecord> read_records(const Config& config, const DiagnoseArg
   const bool both_given = !a.train.empty() && !a.holdout.empty();
   const bool any_given = !a.train.empty() || !a.holdout.empty();
   if (a.event.empty() ? !both_given : any_given)
-    problems.push_back("needs --train and --holdout, or --event alone");
+    problems.push_back("give --train and --holdout, or --event alone");
   if (!a.event.empty() && !any_given) return read_event_records(config, a.event, problems);
   std::vector<std::string> paths = a.train;
   paths.insert(paths.end(), a.holdout.begin(), a.holdout.end());
   return read_diagnose_records(config, paths, a.component, problems);
 }
 
-/// Shows on a terminal how far a diagnosis is: every piece of its parallel work counts.
+/// Shows the progress of a diagnosis on a terminal. Every piece of its parallel work counts.
 class DiagnosisProgress {
  public:
   explicit DiagnosisProgress(bool quiet) : line_("diagnose", quiet) {}
 
   /// Called between the calls of Workers::run().
-  void tell(const std::string& what, double done, double then) {
+  void set_step(const std::string& what, double done, double then) {
     what_ = what;
     done_ = done;
     then_ = then;
@@ -99,7 +202,7 @@ class DiagnosisProgress {
   double done_ = 0, then_ = 0;
 };
 
-/// Runs the diagnosis with as many threads as asked for, and shows its progress on a terminal.
+/// Runs the diagnosis with the requested number of threads, and shows its progress on a terminal.
 estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
                                    const estimator::DiagnosisInput& input,
                                    estimator::DiagnosisOptions options) {
@@ -115,7 +218,7 @@ estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
     workers.run_within(count, work);
   };
   options.progress = [&](const std::string& what, double done, double then) {
-    progress.tell(what, done, then);
+    progress.set_step(what, done, then);
   };
   return diagnose(input.plant, input.segments, options);
 }
@@ -158,7 +261,9 @@ int diagnose_command(const DiagnoseArguments& a) {
   const auto input = estimator::diagnosis_input(pipeline.structure, compared.axes, pipeline.design,
                                                 a.component, samples, pipeline.bending_nmprad);
   if (!input) {
-    fmt::print(stderr, "{}: the channels do not measure every motion that diagnose needs\n",
+    fmt::print(stderr,
+               "{}: its channels do not measure every motion that diagnose needs; see "
+               "docs/diagnosis.md\n",
                a.config);
     return kBadInput;
   }

@@ -4,7 +4,6 @@
 
 #include "daemon/base/json_values.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
-#include "daemon/tools/diagnosis/noise_beyond.h"
 #include "daemon/tools/simulation/effect_json.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"
@@ -14,13 +13,13 @@
 namespace framewatch::daemon {
 namespace {
 
-/// [from, to]; null where it is not known.
+/// Returns [from, to], or null when unknown.
 Json span(double from, double to) {
   return to > from ? Json{json_value(from), json_value(to)} : Json(nullptr);
 }
 
-/// Gap (or its floor) of every channel and overall, averaged over the training or the held-out
-/// segments.
+/// Returns the gap, or its floor, of every channel and overall, averaged over the training or the
+/// held-out segments.
 Json gap_json(const DiagnoseOutput& o, const std::vector<estimator::Gap>& gaps, bool holdout,
               bool floor) {
   Json channels = Json::object();
@@ -44,14 +43,14 @@ Json both(const DiagnoseOutput& o, const std::vector<estimator::Gap>& gaps, bool
   return {{"train", gap_json(o, gaps, false, floor)}, {"holdout", gap_json(o, gaps, true, floor)}};
 }
 
-/// What every overall gap is a share of.
+/// Returns the quantity that every overall gap is a share of.
 Json denominator_json(const DiagnoseOutput& o) {
   Json rms = Json::array();
   for (const estimator::Gap& g : o.diagnosis.before) rms.push_back(json_value(g.measured_rms));
   return {{"of", denominator_words(o)}, {"unit", gap_unit(o)}, {"rms_of_records", rms}};
 }
 
-/// Name, place, parameters.
+/// Returns name, place and parameters of an effect.
 Json effect_json(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
   const estimator::Effect effect = catalogue_effect(o.plant, o.segments, f, o.diagnosis.model);
   Json parameters = parameters_json(effect);
@@ -66,7 +65,7 @@ Json effect_json(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
           {"parameters", parameters}};
 }
 
-/// Its word and what general functions of every kind explain; null where it was not looked at.
+/// Returns the kind of a place's law and the share that each kind explains; null if not examined.
 Json kind_json(const estimator::WhereEntry& where) {
   if (!where.kind) return nullptr;
   Json share = Json::object();
@@ -104,7 +103,7 @@ Json trial_json(const DiagnoseOutput& o, const estimator::Trial& t) {
   return out;
 }
 
-/// Identified parameters beside those of the design.
+/// Returns the identified parameters next to those of the design.
 Json parameters_of(const DiagnoseOutput& o) {
   const estimator::Plant& plant = o.plant;
   const estimator::Model& model = o.diagnosis.model;

@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "daemon/tools/diagnosis/diagnose_output.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
 
 namespace framewatch::daemon {
 
-/// diagnosis.json, schema framewatch.diagnosis/1 (docs/formats.md).
+/// Returns the content of diagnosis.json, schema framewatch.diagnosis/1 (docs/formats.md).
 std::string diagnosis_json(const DiagnoseOutput& output);
 
 }  // namespace framewatch::daemon

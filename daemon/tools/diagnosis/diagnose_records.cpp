@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "daemon/base/file_digest.h"
 #include "daemon/monitor/estimation/estimation.h"
@@ -27,8 +29,8 @@ constexpr double kEverything_s = 1e9;
 constexpr double kSameInstant = 1e-6;  ///< of a sample
 
 constexpr double kMoving = 0.1;      ///< rms of the first second over that of all
-constexpr double kLead_s = 40;       ///< at most; half of the record at most
-constexpr double kTrainShare = 0.6;  ///< of a gap event's samples, the lead included
+constexpr double kLead_s = 40;       ///< longest lead, and at most half of the record
+constexpr double kTrainShare = 0.6;  ///< share of a gap event's samples, lead included
 
 Eigen::Index lead_of(Eigen::Index instants, double rate_hz) {
   return std::min(static_cast<Eigen::Index>(kLead_s * rate_hz), instants / 2);
@@ -151,9 +153,9 @@ void interpolate(const Config& config, const estimator::ComponentTest& component
   }
 }
 
-/// Takes the whole samples of the channels' delays off the columns, as an acquisition takes them
-/// off the stamps of a log. Instants that not every channel has are cut away.
-void take_whole_delays(const Config& config, estimator::RecordSamples& samples) {
+/// Shifts the columns by the whole samples of the channels' delays, as an acquisition shifts the
+/// stamps of a log. Cuts away instants that a channel does not have.
+void remove_whole_delays(const Config& config, estimator::RecordSamples& samples) {
   const auto& axes = config.pipeline.axes;
   Eigen::Index later = 0, earlier = 0;
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -171,7 +173,7 @@ void take_whole_delays(const Config& config, estimator::RecordSamples& samples) 
   samples.accel = Eigen::MatrixXd(samples.accel.middleRows(rows > 0 ? earlier : 0, rows));
 }
 
-/// Empty when there is a problem.
+/// Reads one record. Returns nullopt and adds to `problems` when it cannot be used.
 std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& path,
                                        const estimator::ComponentTest& component,
                                        std::vector<std::string>& problems) {
@@ -187,15 +189,55 @@ std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& 
       log ? from_log(config, out, problems) : from_record(config, component, out, problems);
   if (!read) return std::nullopt;
   interpolate(config, component, out, problems);
-  if (!log && problems.size() == before) take_whole_delays(config, out.samples);
+  if (!log && problems.size() == before) remove_whole_delays(config, out.samples);
   if (out.samples.accel.rows() < kMinInstants)
-    problems.push_back(fmt::format("{}: {} instants are too short, at least {} are needed", path,
+    problems.push_back(fmt::format("{}: too short: {} instants, at least {} are needed", path,
                                    out.samples.accel.rows(), kMinInstants));
   out.sha256 = sha256_of_file(path);
   if (problems.size() > before) return std::nullopt;
   if (!component.prescribed && begins_in_motion(config, out))
     out.samples.lead = lead_of(out.samples.accel.rows(), out.samples.rate_hz);
   return out;
+}
+
+using estimator::ClockOffset;
+
+constexpr std::size_t kMaxNames = 4;
+
+std::string names_of(const estimator::Plant& plant, const std::vector<ClockOffset>& offsets) {
+  std::vector<std::string> names;
+  for (const ClockOffset& o : offsets)
+    names.push_back(plant.axes[static_cast<std::size_t>(o.axis)].name);
+  const std::size_t count = names.size();
+  if (count > kMaxNames) names.resize(kMaxNames);
+  const std::string more =
+      count > kMaxNames ? fmt::format(" and {} more", count - kMaxNames) : std::string();
+  return fmt::format("{}{}", fmt::join(names, ", "), more);
+}
+
+/// Returns the seconds that a segment needs for the fewest frequencies in its band.
+double least_seconds(const estimator::RecordSegment& s) {
+  return s.seconds() * static_cast<double>(estimator::kFewestBins) /
+         static_cast<double>(std::max<Eigen::Index>(1, s.bins()));
+}
+
+void add_clock_problems(const std::string& path, const estimator::Plant& plant,
+                        const estimator::RecordSegment& segment,
+                        std::vector<std::string>& problems) {
+  constexpr double kTogether = 0.1;  ///< s, of channels that one sentence names
+  std::map<std::pair<Eigen::Index, long>, std::vector<ClockOffset>> groups;
+  for (const ClockOffset& o : clocks_apart(plant, segment))
+    groups[{o.base, std::lround(o.seconds / kTogether)}].push_back(o);
+  for (const auto& [key, offsets] : groups) {
+    double mean = 0;
+    for (const ClockOffset& o : offsets) mean += o.seconds / static_cast<double>(offsets.size());
+    problems.push_back(
+        fmt::format("{}: clocks apart: {} read {:.2f} s {} than {} in motion so slow that a "
+                    "building follows its base; measure again with one clock, or set delay_s of "
+                    "the later ones",
+                    path, names_of(plant, offsets), std::abs(mean), mean > 0 ? "later" : "earlier",
+                    plant.axes[static_cast<std::size_t>(key.first)].name));
+  }
 }
 
 }  // namespace
@@ -218,7 +260,7 @@ std::vector<DiagnoseRecord> read_diagnose_records(const Config& config,
 std::vector<DiagnoseRecord> read_event_records(const Config& config, const std::string& event,
                                                std::vector<std::string>& problems) {
   if (!config.gap || config.gap->store.empty()) {
-    problems.push_back(config.path + ": --event needs [gap] store: nothing is stored");
+    problems.push_back(config.path + ": --event needs [gap] store, which is not set");
     return {};
   }
   const std::string path = config.gap->store + "/gap-" + event + ".lcmlog";
@@ -234,6 +276,55 @@ std::vector<DiagnoseRecord> read_event_records(const Config& config, const std::
   out[0].path += ", first part";
   out[1].path += ", second part";
   return out;
+}
+
+ComparedChannels compared_channels(const Config& config, std::vector<DiagnoseRecord>& records) {
+  ComparedChannels out;
+  std::vector<int> new_place;
+  std::vector<Eigen::Index> columns;
+  for (const estimator::SensorAxis& axis : config.pipeline.axes) {
+    new_place.push_back(axis.check ? -1 : static_cast<int>(out.axes.size()));
+    if (axis.check) continue;
+    columns.push_back(static_cast<Eigen::Index>(new_place.size()) - 1);
+    out.axes.push_back(axis);
+    out.axes.back().delay -= estimator::whole_delay_s(axis.delay, config.pipeline.options.rate_hz);
+  }
+  const auto moved = [&](int& channel) {
+    if (channel >= 0) channel = new_place[static_cast<std::size_t>(channel)];
+    return channel >= 0;
+  };
+  for (estimator::SensorAxis& axis : out.axes) moved(axis.cross);
+  for (const estimator::Effect& effect : config.effects) {
+    estimator::Effect known = effect;
+    const bool own = effect.place.channel < 0 || moved(known.place.channel);
+    const bool other = effect.place.with_channel < 0 || moved(known.place.with_channel);
+    if (own && other) out.known.push_back(known);
+  }
+  const auto given = static_cast<Eigen::Index>(new_place.size());
+  for (DiagnoseRecord& record : records) {
+    std::vector<Eigen::Index> kept = columns;
+    for (Eigen::Index c = given; c < record.samples.accel.cols(); ++c) kept.push_back(c);
+    record.samples.accel = Eigen::MatrixXd(record.samples.accel(Eigen::all, kept));
+  }
+  return out;
+}
+
+void add_segment_problems(const std::string& path, const estimator::DiagnosisInput& input,
+                          std::size_t record, const estimator::ComponentTest& component,
+                          std::vector<std::string>& problems) {
+  const estimator::RecordSegment& s = input.segments[record];
+  const estimator::SegmentFault fault = fault_of(input.plant, s, component);
+  if (fault == estimator::SegmentFault::too_short)
+    problems.push_back(
+        fmt::format("{}: too short: {} frequencies lie in the building's band, at least {} are "
+                    "needed; measure {:.0f} s or more",
+                    path, s.bins(), estimator::kFewestBins, std::ceil(least_seconds(s))));
+  else if (fault == estimator::SegmentFault::no_excitation)
+    problems.push_back(path +
+                       ": no excitation: the floors' motion does not exceed the sensors' noise; "
+                       "measure stronger motion, or with quieter sensors");
+  else if (!component.any())
+    add_clock_problems(path, input.plant, s, problems);
 }
 
 }  // namespace framewatch::daemon

@@ -8,8 +8,6 @@
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
-#include "daemon/tools/diagnosis/kind_section.h"
-#include "daemon/tools/diagnosis/noise_beyond.h"
 #include "daemon/tools/diagnosis/where_map.h"
 #include "estimator/diagnose/model/free_run.h"
 #include "estimator/diagnose/model/law_port.h"
@@ -67,7 +65,7 @@ std::string gap_section(const DiagnoseOutput& o) {
          "<p>Free run from the measured " +
          driver_words(o) + " alone, as a share of " + html_text(denominator_words(o)) + ". " +
          fitted + "</p>\n" + html_table({"record", "before", "after", "noise floor"}, rows) +
-         html_figure(plots, "Gap per channel, over what the sensors' noise alone would make.");
+         html_figure(plots, "Gap per channel, with the floor that the sensors' noise alone gives.");
 }
 
 std::string history_section(const DiagnoseOutput& o) {
@@ -105,10 +103,10 @@ std::string history_section(const DiagnoseOutput& o) {
          html_figure(plots, "The channel with the widest gap, around the strongest motion.");
 }
 
-/// What a found law does in the last record: the element's deformation and its restoring force.
+/// Motion of a found law in the last record: the element's deformation and its restoring force.
 struct LawMotion {
   std::string place;
-  int story = 0;                     ///< of a frame; 0: it is none
+  int story = 0;                     ///< of a frame; 0: not a frame
   double linear = 0, stiffness = 0;  ///< before and after, SI
   Eigen::VectorXd deformation_m, force_n;
 };
@@ -137,7 +135,8 @@ std::vector<LawMotion> law_motions(const DiagnoseOutput& o) {
   return out;
 }
 
-/// What a law means for whoever looks after the building.
+/// Explains a law for the people who look after the building: its force at the largest deformation
+/// against the linear model's.
 std::string meaning(const DiagnoseOutput& o, const LawMotion& m) {
   Eigen::Index at = 0;
   const double drift = m.deformation_m.cwiseAbs().maxCoeff(&at);
@@ -172,10 +171,10 @@ std::string loop_section(const std::vector<LawMotion>& motions) {
   }
   return plots.empty() ? ""
                        : "<h2>Force and deformation</h2>\n" +
-                             html_figure(plots, "Of the last record, as the model has it.");
+                             html_figure(plots, "The last record, computed with the model.");
 }
 
-/// Time span of nine tenths of the signal that a place needs.
+/// Returns the time span with nine tenths of the signal that a place needs.
 std::string when(const DiagnoseOutput& o, const estimator::WhereEntry& w) {
   if (!(w.to_s > w.from_s)) return "";
   return fmt::format("{:.1f} to {:.1f} s of {}", w.from_s, w.to_s,
@@ -202,15 +201,15 @@ std::string where_section(const DiagnoseOutput& o) {
     rows.push_back(
         {place(o, w.place), fmt::format("{:.3f}", w.ratio), when(o, w), band(w), peak(w)});
   return fmt::format(
-             "<h2>Where</h2>\n<p>One place after the other is allowed to do anything at all. At "
-             "the "
-             "right one the rest of a linear building then fits: what is left falls from {:.3g} "
-             "times the sensors' noise to 1.</p>\n",
+             "<h2>Where</h2>\n<p>Each place in turn may have an arbitrary force. At the right "
+             "place "
+             "the rest of a linear building then fits: the rest that is not explained falls from "
+             "{:.3g} times the sensors' noise to 1.</p>\n",
              o.diagnosis.ratio_before) +
          html_figure(
              where_map(o.plant.structure, o.plant.axes, o.diagnosis.map, o.diagnosis.ratio_before),
-             "Plans of the stories. The stronger a frame, panel, mass or sensor is drawn, "
-             "the less is left when it may do anything; the three best are numbered.") +
+             "Plans of the stories. The stronger a frame, panel, mass or sensor is drawn, the less "
+             "an arbitrary force there leaves unexplained. The three best are numbered.") +
          html_table({"place", "left, times noise", "when", "frequencies", "largest"}, rows);
 }
 
@@ -219,16 +218,16 @@ const char* why_it_lost(estimator::TrialOutcome outcome) {
     case estimator::TrialOutcome::fitted:
       return "leaves more unexplained";
     case estimator::TrialOutcome::screened_out:
-      return "others of its place do better when the measured motion drives the law";
+      return "others at its place explain more when the measured motion drives the law";
     case estimator::TrialOutcome::diverged:
-      return "its free run comes to no end";
+      return "its free run diverges";
     case estimator::TrialOutcome::other_law:
       break;
   }
-  return "as fitted it is not the law of this name";
+  return "its fitted parameters do not give the law of this name";
 }
 
-/// Table of the best trials. best: cost of the one that was chosen.
+/// Returns a table of the best trials. best: cost of the chosen one.
 std::string ranking(const DiagnoseOutput& o, const std::vector<estimator::Trial>& trials,
                     double best) {
   std::vector<std::vector<std::string>> rows;
@@ -267,18 +266,18 @@ std::string effects_section(const DiagnoseOutput& o) {
     out += "<p>" + with_capital(confidence_words(f)) + ".</p>\n";
     if (f.approximate)
       out +=
-          "<p>More than noise is left: what acts is not quite this, the nearest name in the "
-          "catalogue, or something else acts besides.</p>\n";
+          "<p>More than noise is left: the effect is not exactly this one, the nearest in the "
+          "catalogue, or another effect acts too.</p>\n";
     for (const estimator::EffectKind kind : f.like)
-      out += "<p>Cannot be told from " + html_text(std::string(name_of(kind))) +
-             " with these records: a motion of another strength would tell.</p>\n";
+      out += "<p>These records do not distinguish it from " +
+             html_text(std::string(name_of(kind))) + ": record motion of another strength.</p>\n";
     if (!f.alternatives.empty())
       out += "<h3>Runners-up</h3>\n" + ranking(o, f.alternatives, f.chosen.cost);
   }
   if (!o.diagnosis.rejected.empty())
     out +=
-        "<h2>What did not earn its place</h2>\n<p>None that is what its name says explains 97 % of "
-        "what an arbitrary force at the best place would, without worsening a record.</p>\n" +
+        "<h2>Rejected effects</h2>\n<p>No effect that fits its name explains 97 % of what an "
+        "arbitrary force at the best place explains without worsening a record.</p>\n" +
         ranking(o, o.diagnosis.rejected, o.diagnosis.rejected.front().cost);
   return out;
 }
@@ -306,7 +305,7 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
     items += "<li>" +
              html_text(with_capital(effect_words(o, f)) + ": " + grade_word(grade_of(f)) + ", " +
                        confidence_words(f)) +
-             fmt::format("; it takes {:.0f} % of the gap.</li>\n",
+             fmt::format("; it closes {:.0f} % of the gap.</li>\n",
                          100 * share_of_gap(o, f.before - f.after));
   if (const std::string text = leading_sentence(o); !text.empty())
     items += "<li>" + html_text(text) + "</li>\n";
@@ -323,9 +322,8 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
   body += loop_section(motions) + where_section(o) + kind_section(o) + gap_section(o) +
           history_section(o) + effects_section(o);
   body += fmt::format(
-      "<h2>What stays unexplained</h2>\n<p>After all effects the simulation differs from the "
-      "measurement by {:.3g} times what the sensors' noise explains; 1 would be nothing but "
-      "noise.</p>\n",
+      "<h2>Unexplained rest</h2>\n<p>With all effects the simulation differs from the measurement "
+      "by {:.3g} times what the sensors' noise explains; 1 means noise alone.</p>\n",
       d.ratio_after);
   return html_page(title, body + provenance(o));
 }

@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "daemon/tools/diagnosis/diagnose_output.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
 
 namespace framewatch::daemon {
 
-/// report.html: a self-contained page.
+/// Returns the content of report.html, a self-contained page.
 std::string diagnosis_report(const DiagnoseOutput& output);
 
 }  // namespace framewatch::daemon

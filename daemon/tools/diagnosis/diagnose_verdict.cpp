@@ -3,19 +3,101 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <string_view>
 
 #include <fmt/core.h>
 
-#include "daemon/tools/diagnosis/kind_section.h"
-#include "daemon/tools/diagnosis/noise_beyond.h"
+#include "daemon/base/html_page.h"
+#include "daemon/base/svg_plot.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::daemon {
 namespace {
 
-/// What an effect does, for people who do not know its name; in the order of EffectKind.
+constexpr double kBeyond = 2;  // times the configured noise
+
+double quietest(const std::vector<estimator::RecordSegment>& segments, Eigen::Index axis) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const estimator::RecordSegment& s : segments)
+    least = std::min(
+        least,
+        std::sqrt(estimator::quiet_noise_variance(s.accel.col(axis), s.rate_hz) / (s.rate_hz / 2)));
+  return least;
+}
+
+constexpr Eigen::Index kLoopPoints = 4000;
+
+/// Words for estimator::LawKind, in its order.
+constexpr std::array kKindWords = {
+    "a linear element's",
+    "elastic: it follows the deformation, and what was stored comes back",
+    "an impact's: it follows the deformation from a clearance on",
+    "dissipative: it follows the rate of the deformation",
+    "hysteretic: it follows the deformation and its past",
+    "that of a stiffness which changes with time",
+    "not of a kind that follows the motion there",
+};
+static_assert(kKindWords.size() == static_cast<std::size_t>(estimator::LawKind::external) + 1);
+
+/// Returns the place whose kind was examined; nullptr without one, or if it needs a linear element.
+const estimator::WhereEntry* of_kind(const DiagnoseOutput& o) {
+  for (const estimator::WhereEntry& w : o.diagnosis.where)
+    if (w.kind) return w.kind->kind == estimator::LawKind::linear ? nullptr : &w;
+  return nullptr;
+}
+
+std::string loop(const estimator::KindOfLaw& kind) {
+  std::vector<double> d, force;
+  const Eigen::Index stride = std::max<Eigen::Index>(1, kind.d_m.size() / kLoopPoints);
+  for (Eigen::Index i = 0; i < kind.d_m.size(); i += stride) {
+    d.push_back(kind.d_m[i]);
+    force.push_back(kind.force_n[i]);
+  }
+  SvgPlot plot("force beyond a linear element, strongest record", {"deformation, m"}, {"force, N"});
+  plot.add({"", 0, SvgMark::thin_line, d, force});
+  return plot.svg();
+}
+
+/// Plots the means of the surface along one of its sides: of all samples, and of those in the
+/// middle third of the other side.
+std::string means(const estimator::RestoringSurface& surface, bool over_deformation) {
+  const Eigen::VectorXd& at = over_deformation ? surface.d_m : surface.v_mps;
+  const Eigen::Index others = over_deformation ? surface.v_mps.size() : surface.d_m.size();
+  SvgSeries all{"all samples", 1, SvgMark::dots, {}, {}};
+  SvgSeries middle{
+      over_deformation ? "at a low rate" : "at a small deformation", 0, SvgMark::line, {}, {}};
+  for (Eigen::Index i = 0; i < at.size(); ++i) {
+    double sum = 0, count = 0, inner_sum = 0, inner_count = 0;
+    for (Eigen::Index j = 0; j < others; ++j) {
+      const double force = over_deformation ? surface.force_n(i, j) : surface.force_n(j, i);
+      const double n = over_deformation ? surface.count(i, j) : surface.count(j, i);
+      if (!std::isfinite(force)) continue;
+      sum += n * force;
+      count += n;
+      if (j < others / 3 || j >= others - others / 3) continue;
+      inner_sum += n * force;
+      inner_count += n;
+    }
+    if (count > 0) {
+      all.x.push_back(at[i]);
+      all.y.push_back(sum / count);
+    }
+    if (inner_count > 0) {
+      middle.x.push_back(at[i]);
+      middle.y.push_back(inner_sum / inner_count);
+    }
+  }
+  SvgPlot plot(over_deformation ? "mean force over deformation" : "mean force over rate",
+               {over_deformation ? "deformation, m" : "rate, m/s"}, {"force, N"});
+  plot.add(all);
+  plot.add(middle);
+  return plot.svg();
+}
+
+/// Explains each effect to people who do not know its name. In the order of EffectKind.
 constexpr std::array kPlainNames = {
     "a stiffness that changes with the deformation",
     "a stiffness that differs between the two directions",
@@ -28,8 +110,8 @@ constexpr std::array kPlainNames = {
     "a stop on one side",
     "play between two stops",
     "the pull of the weight on the leaning building",
-    "a mass that was not counted",
-    "a mass on a spring of its own",
+    "a mass missing in the model",
+    "a mass on a separate spring",
     "rocking of the foundation",
     "bending of the whole frame",
     "another spring",
@@ -38,18 +120,85 @@ constexpr std::array kPlainNames = {
     "a sudden loss of stiffness",
     "a slow change of stiffness",
     "a floor that gives way in its plane",
-    "a force that nobody measures",
-    "a sensor of another scale",
-    "a sensor turned round",
+    "a force that is not measured",
+    "a sensor with a wrong scale",
+    "a sensor mounted the wrong way round",
     "a sensor mounted askew",
-    "a sensor that is late",
+    "a sensor with a delay",
     "a sensor beyond its range",
-    "a sensor whose zero moves",
+    "a sensor whose zero drifts",
     "two sensors exchanged",
 };
 static_assert(kPlainNames.size() == static_cast<std::size_t>(estimator::EffectKind::swapped) + 1);
 
 }  // namespace
+
+std::vector<NoiseBeyond> noise_beyond_configured(
+    const estimator::Plant& plant, const std::vector<estimator::RecordSegment>& segments) {
+  std::vector<NoiseBeyond> out;
+  for (std::size_t a = 0; a < plant.axes.size(); ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double configured = plant.axes[a].noise_density;
+    if (configured <= 0 || plant.is_force(axis) || segments.front().is_displaced(axis)) continue;
+    const double read = quietest(segments, axis);
+    if (read > kBeyond * configured) out.push_back({a, configured, read});
+  }
+  return out;
+}
+
+std::string noise_sentence(const DiagnoseOutput& o) {
+  if (o.diagnosis.verdict == estimator::Verdict::adequate) return "";
+  const std::vector<NoiseBeyond> beyond = noise_beyond_configured(o.plant, o.segments);
+  if (beyond.empty()) return "";
+  const auto ratio = [](const NoiseBeyond& n) { return n.read / n.configured; };
+  const NoiseBeyond& worst = *std::max_element(
+      beyond.begin(), beyond.end(),
+      [&](const NoiseBeyond& a, const NoiseBeyond& b) { return ratio(a) < ratio(b); });
+  return fmt::format(
+      "{} reads {:.3g} times the configured noise ({:.2g} instead of {:.2g} m/s^2/sqrt(Hz), in the "
+      "quietest seconds from 20 to 46 % of the sampling rate){}. If that is noise, the rest that "
+      "the model leaves may be noise too: record the building at rest, or remove "
+      "noise_mps2_per_rthz.",
+      o.plant.axes[worst.axis].name, ratio(worst), worst.read, worst.configured,
+      beyond.size() > 1
+          ? fmt::format(", and {} more channels twice as much or more", beyond.size() - 1)
+          : std::string());
+}
+
+std::string kind_sentence(const DiagnoseOutput& o) {
+  const estimator::WhereEntry* where = of_kind(o);
+  if (!where) return "";
+  const auto index = static_cast<std::size_t>(where->kind->kind);
+  std::string out =
+      fmt::format("The force that {} needs beyond a spring and a dashpot is {}",
+                  place_text(where->place, o.plant.structure, o.plant.axes), kKindWords[index]);
+  if (where->kind->kind != estimator::LawKind::external)
+    out += fmt::format(" (that explains {:.0f} % of it)", 100 * where->kind->share[index]);
+  return out + ".";
+}
+
+std::string kind_section(const DiagnoseOutput& o) {
+  const estimator::WhereEntry* where = of_kind(o);
+  if (!where) return "";
+  std::vector<std::vector<std::string>> rows;
+  for (const estimator::LawKind kind :
+       {estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
+        estimator::LawKind::hysteretic, estimator::LawKind::time_varying}) {
+    std::string word = law_kind_word(kind);
+    std::replace(word.begin(), word.end(), '_', ' ');
+    rows.push_back(
+        {word, fmt::format("{:.0f} %", 100 * where->kind->share[static_cast<std::size_t>(kind)])});
+  }
+  const estimator::KindOfLaw& kind = *where->kind;
+  return "<h2>What sort of force</h2>\n<p>" + html_text(kind_sentence(o)) +
+         " The table gives the share of that force, beyond noise, that general functions of each "
+         "kind explain.</p>\n" +
+         html_table({"kind", "explains"}, rows) +
+         html_figure({loop(kind), means(kind.surface, true), means(kind.surface, false)},
+                     "The force that the place needs beyond a spring and a dashpot, without a law. "
+                     "Closed loops dissipate, a single curve is elastic, a step at rate zero is "
+                     "friction.");
+}
 
 std::string gap_percent(double share) {
   return fmt::format("{:.2f} %", 100 * share);
@@ -90,9 +239,9 @@ std::string leading_sentence(const DiagnoseOutput& o) {
   estimator::FoundEffect found;
   found.chosen = best.trial;
   return fmt::format(
-      "Of the known effects the leading one is {}: with it the held-out gap falls from {} to {}. "
-      "It "
-      "is not established: more is left than it should leave.",
+      "The best of the known effects is {}: with it the held-out gap falls from {} to {}. It is "
+      "not "
+      "established, because it leaves more unexplained than it should.",
       effect_words(o, found), gap_percent(best.before), gap_percent(best.after));
 }
 
@@ -161,11 +310,10 @@ std::string gap_sentence(const DiagnoseOutput& o) {
       held_out ? "held-out records" : "records", gap_percent(estimator::mean_gap(d.before, from)),
       gap_percent(estimator::mean_gap(d.after, from)),
       gap_percent(estimator::mean_floor(d.before, from)), denominator_words(o),
-      o.plant.unread.cols() == 0
-          ? ""
-          : " Compared are the channels that there are: floors without one follow from the others, "
-            "stories between measured floors share one factor, and laws inside such groups are "
-            "not looked for.");
+      o.plant.unread.cols() == 0 ? ""
+                                 : " Floors without a channel follow from the others, stories "
+                                   "between measured floors share "
+                                   "one factor, and laws inside such groups are not searched for.");
 }
 
 std::string damping_sentence(const DiagnoseOutput& o) {
@@ -174,8 +322,8 @@ std::string damping_sentence(const DiagnoseOutput& o) {
     ratios += fmt::format("{}{:.2g} % in mode {}", ratios.empty() ? "" : ", ",
                           100 * e.value("damping_ratio"), e.place.mode);
   return ratios.empty() ? ""
-                        : "The damping is not that of dashpots between floors alone: beside them "
-                          "modes have damping ratios of their own (" +
+                        : "Dashpots between floors are not all of the damping: modes have damping "
+                          "ratios in addition (" +
                               ratios + ").";
 }
 
@@ -185,7 +333,7 @@ std::string diagnosis_text(const DiagnoseOutput& o) {
   if (const std::string text = damping_sentence(o); !text.empty()) out += "  " + text + "\n";
   if (const std::string text = noise_sentence(o); !text.empty()) out += "  " + text + "\n";
   for (const estimator::FoundEffect& f : d.effects)
-    out += fmt::format("  {}, {}: {}; it takes {:.0f} % of the gap\n", grade_word(grade_of(f)),
+    out += fmt::format("  {}, {}: {}; it closes {:.0f} % of the gap\n", grade_word(grade_of(f)),
                        effect_words(o, f), confidence_words(f),
                        100 * share_of_gap(o, f.before - f.after));
   if (const std::string text = leading_sentence(o); !text.empty()) out += "  " + text + "\n";

@@ -1,48 +1,86 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
-#include "daemon/tools/diagnosis/diagnose_output.h"
+#include "daemon/config/config.h"
+#include "daemon/tools/diagnosis/diagnose_records.h"
+#include "estimator/diagnose/fit/diagnosis_input.h"
+#include "estimator/diagnose/verdict/diagnosis.h"
 
 namespace framewatch::daemon {
 
-// A diagnosis in words for people who look after the building; all of it is text, not HTML.
+/// Everything that the outputs of a diagnosis are made from.
+struct DiagnoseOutput {
+  const Config& config;
+  const estimator::Plant& plant;
+  const std::vector<DiagnoseRecord>& records;  ///< training records first
+  const std::vector<estimator::RecordSegment>& segments;
+  std::size_t holdout_from;  ///< index of the first held-out record
+  const estimator::Diagnosis& diagnosis;
+};
 
-/// What is missing, and where, in one sentence.
+// The functions below describe a diagnosis for the people who look after the building. All but
+// kind_section() return text, not HTML.
+
+/// Returns one sentence: what the model lacks, and where.
 std::string verdict_sentence(const DiagnoseOutput& output);
 
-/// The one figure of the gap: free-run NRMSE of the records that nothing was fitted to, before and
-/// after, beside its floor.
+/// Returns the gap in one figure: free-run NRMSE of the held-out records before and after, next to
+/// its floor.
 std::string gap_sentence(const DiagnoseOutput& output);
 
-/// What every overall gap is a share of, and its unit.
-/// What drives every free run: "motion of the base", "force", or both.
+/// Returns the input of every free run: "motion of the base", "force", or both.
 std::string driver_words(const DiagnoseOutput& output);
 
+/// Returns the quantity that every overall gap is a share of.
 std::string denominator_words(const DiagnoseOutput& output);
-const char* gap_unit(const DiagnoseOutput& output);
+const char* gap_unit(const DiagnoseOutput& output);  ///< unit of that quantity
 
-/// "something like bouc wen at story 1, frame y1 (gradual yielding)".
+/// Returns "something like bouc wen at story 1, frame y1 (gradual yielding)".
 std::string effect_words(const DiagnoseOutput& output, const estimator::FoundEffect& effect);
 
-/// Part of the held-out gap before, 0..1, that a fall of the gap is.
+/// Returns a fall of the gap as a share, 0..1, of the held-out gap before.
 double share_of_gap(const DiagnoseOutput& output, double fall);
 
-/// The modes' damping ratios beside the dashpots; empty where there are none.
+/// Returns the damping ratios that modes have in addition to the dashpots; "" without any.
 std::string damping_sentence(const DiagnoseOutput& output);
 
-/// What the best law does that was not named; empty where there is none.
+/// Describes the best law that is not established; "" without one.
 std::string leading_sentence(const DiagnoseOutput& output);
 
-/// How sure its name is.
+/// Returns how certain the name of an effect is.
 std::string confidence_words(const estimator::FoundEffect& effect);
 
-/// What the command prints: all of these.
+/// Returns one sentence: the kind of force that the likeliest element needs, whatever its law. ""
+/// if no element was examined or a linear one is enough.
+std::string kind_sentence(const DiagnoseOutput& output);
+
+/// Returns HTML of kind_sentence() with pictures: the force beyond a linear element over
+/// deformation, and its means over deformation and over rate. "" if kind_sentence() is.
+std::string kind_section(const DiagnoseOutput& output);
+
+/// A channel whose noise exceeds the configured one, densities in m/s^2/sqrt(Hz).
+struct NoiseBeyond {
+  std::size_t axis = 0;
+  double configured = 0;
+  double read = 0;  ///< by quiet_noise_variance() of the quietest record
+};
+
+/// Returns the accelerations that read more than twice the configured noise at frequencies without
+/// motion of the building. A diagnosis may fail to explain that noise.
+std::vector<NoiseBeyond> noise_beyond_configured(
+    const estimator::Plant& plant, const std::vector<estimator::RecordSegment>& segments);
+
+/// Describes noise_beyond_configured() and what to do; "" without such channels, or if nothing is
+/// left to explain.
+std::string noise_sentence(const DiagnoseOutput& output);
+
+/// Returns the text that the command prints: all of these.
 std::string diagnosis_text(const DiagnoseOutput& output);
 
-/// "12.34 %".
-std::string gap_percent(double share);
-/// With a capital letter at the beginning.
-std::string with_capital(std::string text);
+std::string gap_percent(double share);       ///< "12.34 %"
+std::string with_capital(std::string text);  ///< with a capital first letter
 
 }  // namespace framewatch::daemon

@@ -53,7 +53,7 @@ class Plans {
   }
 
  private:
-  /// 0: explains nothing, 1: as much as the best place.
+  /// Returns 0 for a place that explains nothing, 1 for the best place.
   double strength(const estimator::WhereEntry& e) const {
     const double most = std::log(before_ / map_.front().ratio);
     return most > 0 ? std::clamp(std::log(before_ / e.ratio) / most, 0.0, 1.0) : 0;
@@ -72,7 +72,8 @@ class Plans {
     return at == map_.end() ? nullptr : &*at;
   }
 
-  /// The entry of a frame at a story; a force on the frame at that floor counts as the frame.
+  /// Returns the entry of a frame at a story. A force on the frame at that floor counts as the
+  /// frame.
   const estimator::WhereEntry* of_frame(int story, int frame) const {
     return find([&](const estimator::EffectPlace& p) {
       return (p.kind == estimator::PlaceKind::frame || p.kind == estimator::PlaceKind::node) &&
@@ -145,7 +146,7 @@ class Plans {
     }
   }
 
-  /// At the far end of the frame that the axis is on; axes of the whole base in its middle.
+  /// Returns the far end of the frame that the axis is on; the middle for axes of the whole base.
   void draw_sensors(int story) {
     double along = screen_x(x_.back() / 2);
     for (std::size_t a = 0; a < axes_.size(); ++a) {
@@ -176,7 +177,7 @@ class Plans {
   const std::vector<estimator::SensorAxis>& axes_;
   const std::vector<estimator::WhereEntry>& map_;
   double before_;
-  std::vector<double> x_, y_;  ///< of the lines, pixels
+  std::vector<double> x_, y_;  ///< places of the lines, pixels
   std::vector<estimator::EffectPlace> numbered_;
   std::string out_;
 };

@@ -9,9 +9,9 @@
 
 namespace framewatch::daemon {
 
-/// Plans of the stories, the top one first, as inline SVGs: frames are lines, floor panels squares,
-/// sensors circles, masses squares where frames cross. A place is drawn wider and stronger the less
-/// misfit an arbitrary signal there leaves; the three best that appear in a plan are numbered.
+/// Draws plans of the stories, the top one first, as inline SVGs. Frames are lines, floor panels
+/// squares, sensors circles, masses squares where frames cross. A place is drawn wider and stronger
+/// the less misfit an arbitrary signal there leaves; the three best in a plan are numbered.
 /// ratio_before: misfit over its expectation under noise, without any place.
 std::vector<std::string> where_map(const estimator::Structure& structure,
                                    const std::vector<estimator::SensorAxis>& axes,

@@ -1,12 +1,12 @@
 #include "daemon/tools/lab/accuracy_study.h"
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "daemon/base/median.h"
-#include "daemon/tools/lab/paper_buildings.h"
-#include "daemon/tools/lab/paper_method.h"
-#include "daemon/tools/lab/random_building.h"
+#include "daemon/tools/lab/accuracy_trial.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/identify/solve/batch_least_squares.h"
 #include "estimator/refine/max_likelihood.h"
 #include "estimator/simulate/linear_response.h"
@@ -17,7 +17,7 @@ namespace {
 constexpr double kStudyDuration_s = 15;
 constexpr double kStudyEvery_s = 1;
 constexpr double kRandomNoise = 0.01;
-/// Only a window a second is looked at: no need to solve every hundredth.
+/// One window per second is used, so windows need not be solved every hundredth of a second.
 constexpr double kStudyHop_s = 0.25;
 
 void collect(const Eigen::VectorXd& theta, const estimator::ParameterTable& table,
@@ -45,7 +45,7 @@ void run_paper_example(const estimator::Structure& structure,
           errors_of(result, Method::paper_denoised));
 }
 
-/// First row of the record that a window saw.
+/// Returns the first row of a record that is in the window.
 Eigen::Index first_row(const estimator::WindowEstimate& window) {
   const double end_s = 1e-6 * static_cast<double>(to_microseconds(window.end));
   return std::llround(end_s * kTrialRate_hz) - window.rows;
@@ -90,6 +90,33 @@ AccuracyRow merged(const std::string& name, std::vector<SeedResult> results) {
     }
   row.first_seed = std::move(results.front());
   return row;
+}
+
+constexpr double kSweepDuration_s = 10;
+constexpr double kSweepHop_s = 0.25;
+
+struct Piece {
+  Eigen::VectorXd paper, denoised, matched;
+};
+
+Eigen::VectorXd matched(const estimator::Structure& structure,
+                        const estimator::ParameterTable& table, const Eigen::VectorXd& truth,
+                        const estimator::PlanMotion& motion, double noise_ratio,
+                        std::uint64_t seed) {
+  const ExactRecord record = exact_record(structure, truth, motion, noise_ratio, kSweepDuration_s);
+  estimator::PipelineConfig config{
+      structure, record.axes, {}, perturbed_design(table, truth, 0.1, 0.3, seed)};
+  config.options.rate_hz = kTrialRate_hz;
+  config.options.hop_s = kSweepHop_s;
+  const auto windows = run_windows(config, with_noise(record, seed), 0, kSweepHop_s);
+  if (windows.empty()) return Eigen::VectorXd::Constant(table.size(), NAN);
+  return Eigen::Map<const Eigen::VectorXd>(windows.back().solution.data(), table.size());
+}
+
+/// Returns identified over given; NaN when nothing was identified.
+Eigen::VectorXd ratio_to(const Eigen::VectorXd& truth, const Eigen::VectorXd& identified) {
+  if (identified.size() == 0) return Eigen::VectorXd::Constant(truth.size(), NAN);
+  return identified.cwiseQuotient(truth);
 }
 
 }  // namespace
@@ -186,6 +213,41 @@ AccuracyRow study_random_buildings(int seeds, const Workers& workers) {
         run_seed(building.structure, building.truth, kRandomNoise, seed);
   });
   return merged("random buildings, 1 %", std::move(results));
+}
+
+NoiseSweep sweep_noise(const estimator::GroundMotion& motion, int seeds, const Workers& workers) {
+  const estimator::Structure structure = table2();
+  const estimator::ParameterTable table(structure);
+  NoiseSweep out{table, {0, 0.01, 0.02, 0.03, 0.05, 0.07, 0.10}, {}, {}, {}};
+  const Eigen::VectorXd truth = table2_theta('c');
+  const estimator::PlanMotion plan = directed(motion, std::numbers::pi / 4);
+  const auto rows = static_cast<Eigen::Index>(kSweepDuration_s * kTrialRate_hz);
+  const estimator::MotionHistory exact =
+      exact_motion(structure, table, truth, plan, kTrialRate_hz, rows);
+  const int levels = static_cast<int>(out.noise_ratio.size());
+  std::vector<Piece> pieces(static_cast<std::size_t>(levels * seeds));
+  workers.run("noise on Table 2c", levels * seeds, [&](int i) {
+    const double noise = out.noise_ratio[static_cast<std::size_t>(i % levels)];
+    const auto seed = static_cast<std::uint64_t>(i / levels) + 1;
+    const estimator::MotionHistory noisy = with_paper_noise(exact, kTrialRate_hz, noise, seed);
+    pieces[static_cast<std::size_t>(i)] = {batch_least_squares(structure, table, noisy),
+                                           batch_least_squares(structure, table, denoised(noisy)),
+                                           matched(structure, table, truth, plan, noise, seed)};
+  });
+  for (int l = 0; l < levels; ++l) {
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(table.size());
+    Piece mean{zero, zero, zero};
+    for (int s = 0; s < seeds; ++s) {
+      const Piece& piece = pieces[static_cast<std::size_t>(s * levels + l)];
+      mean.paper += ratio_to(truth, piece.paper) / seeds;
+      mean.denoised += ratio_to(truth, piece.denoised) / seeds;
+      mean.matched += ratio_to(truth, piece.matched) / seeds;
+    }
+    out.paper.push_back(mean.paper);
+    out.denoised.push_back(mean.denoised);
+    out.matched.push_back(mean.matched);
+  }
+  return out;
 }
 
 }  // namespace framewatch::daemon

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "daemon/tools/lab/accuracy_trial.h"
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/simulate/random.h"
 
 namespace framewatch::daemon {

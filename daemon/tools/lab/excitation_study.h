@@ -12,11 +12,12 @@
 
 namespace framewatch::daemon {
 
-/// What is published of a building whose sensors' noise stays while its motion fades.
+/// Counts of published parameters of a building at one level of motion. The sensors' noise stays
+/// while the motion fades from level to level.
 struct ExcitationLevel {
   double noise_ratio;  ///< noise of the sensors over the rms of the motion
-  /// By ParameterKind: parameters in all windows, published, published and wrong by more than
-  /// kWrong.
+  /// By ParameterKind: parameters in all windows, published ones, and published ones that are wrong
+  /// by more than kWrong.
   std::array<int, 4> all{}, published{}, wrong{};
 };
 /// 5 % in frame stiffness, 25 % in the others.
@@ -27,17 +28,17 @@ struct ExcitationSweep {
   std::vector<ExcitationLevel> levels;
 
   int published(int kind) const;
-  /// Of the published ones.
+  /// Returns the wrong share of the published parameters.
   double wrong_ratio(int kind) const;
 };
 
-/// Noise from 0.3 % to 3000 % of the motion, 15-s motions 1 .. seeds, design off by up to 20 % in k
-/// and 40 % in the rest. noise_configured: whether the estimator is told the noise densities.
+/// Runs noise from 0.3 % to 3000 % of the motion on 15-s motions 1 .. seeds. The design is off by
+/// up to 20 % in k and 40 % in the rest. noise_configured: the estimator knows the noise densities.
 ExcitationSweep study_excitation(const std::string& name, const estimator::Structure& structure,
                                  const Eigen::VectorXd& truth, bool noise_configured, int seeds,
                                  const Workers& workers);
 
-/// Windows of nothing but sensor noise.
+/// Counts of windows of sensor noise alone.
 struct Silence {
   std::string name;
   double hours;
@@ -46,12 +47,12 @@ struct Silence {
   std::int64_t published = 0;  ///< windows with at least one value
 };
 
-/// White noise of 1e-3 m/s^2 rms on every axis for silence.hours; counts into silence.
+/// Runs white noise of 1e-3 m/s^2 rms on every axis for silence.hours and counts into `silence`.
 void listen_to_noise(const estimator::Structure& structure, const Eigen::VectorXd& design,
                      Silence& silence);
 
-/// Largest relative change of a frame stiffness when every channel gets a bias of 0.05 m/s^2 and a
-/// thermal ramp of 0.001 m/s^2 per s: exact motion, 5-s windows from 10 s to 15 s.
+/// Returns the largest relative change of a frame stiffness when every channel gets a bias of 0.05
+/// m/s^2 and a thermal ramp of 0.001 m/s^2 per s. Exact motion, 5-s windows from 10 s to 15 s.
 double change_by_bias(const estimator::Structure& structure, const Eigen::VectorXd& truth,
                       std::uint64_t seed);
 

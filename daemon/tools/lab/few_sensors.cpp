@@ -19,13 +19,14 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kEvery_s = 5, kNormal95 = 1.96;
-constexpr std::uint64_t kAcross = 5000;  // of the seeds: ground motion along y
+constexpr std::uint64_t kAcross = 5000;  // offset of the seed for ground motion along y
 
 double between(estimator::Random& random, double most) {
   return most * (2 * random.uniform() - 1);
 }
 
-/// Truth in the order of the stories' table, and masses, both off the design as the trial says.
+/// Draws the true parameters, in the order of the stories' table, and the masses as far off the
+/// design as the trial demands.
 void draw(const TallTrial& t, estimator::Structure& s, Eigen::VectorXd& theta) {
   estimator::Random random(1000 + t.seed);
   const estimator::ParameterTable table(s);
@@ -56,10 +57,10 @@ void draw(const TallTrial& t, estimator::Structure& s, Eigen::VectorXd& theta) {
   }
 }
 
-/// The building on uneven soil: one soft story more below, so that its base also turns.
+/// Puts the building on uneven soil: an additional soft story below it lets its base turn.
 void put_on_soil(estimator::Structure& s, Eigen::VectorXd& theta,
                  std::vector<estimator::SensorAxis>& axes) {
-  constexpr double kSoil[] = {2.5, 0.8, 0.8, 2.5};  // of the lowest story, by frame
+  constexpr double kSoil[] = {2.5, 0.8, 0.8, 2.5};  // times the lowest story, by frame
   constexpr double kSoilDamping_s = 0.01;           // damping over stiffness
   const estimator::Structure above = s;
   const estimator::ParameterTable before(above);
@@ -240,7 +241,7 @@ std::vector<FewSensorsRow> study_few_sensors(int seeds, const Workers& workers) 
   TallTrial bending;
   bending.bending_nmprad = bending.believed_bending_nmprad = 3e12;
   bending.duration_s = 90;
-  bending.from_s = 50;  // what is held has been found
+  bending.from_s = 50;  // by then the held bending has been found
   add("4 of 20 floors, noise 1 %, frames bend", bending);
   bending.believed_bending_nmprad *= 2;
   add("4 of 20 floors, noise 1 %, frames bend, design twice as stiff in it", bending);

@@ -25,15 +25,17 @@ std::string data_folder() {
   return set != nullptr ? set : "";
 }
 
-/// What is missing of the data, for the person; empty when nothing is.
-void tell_what_is_missing(const Reproduction& all) {
+/// Tells the user which data are missing and what replaces them.
+void print_missing_data(const Reproduction& all) {
   if (all.motions_missing)
     fmt::print(stderr,
                "reproduce: the paper's ground motions are not in FRAMEWATCH_DATA{}; seeded "
-               "Kanai-Tajimi motions stand in\n",
+               "Kanai-Tajimi motions replace them\n",
                data_folder().empty() ? " (not set)" : " (" + data_folder() + ")");
   if (all.measured_table_missing)
-    fmt::print(stderr, "reproduce: the measured shaking table is not there; the virtual one is\n");
+    fmt::print(stderr,
+               "reproduce: the measured shaking table is not in FRAMEWATCH_DATA; only the virtual "
+               "one is evaluated\n");
 }
 
 bool write(const std::string& path, const std::string& text) {
@@ -62,13 +64,13 @@ Reproduction measured(const ReproduceArguments& a) {
 int reproduce(const ReproduceArguments& a) {
   const auto& cases = reproduction_cases();
   if (!a.only.empty() && std::find(cases.begin(), cases.end(), a.only) == cases.end())
-    return refuse("reproduce", fmt::format("--case {}: there is no such case, only {}", a.only,
+    return refuse("reproduce", fmt::format("--case {}: unknown case; choose one of {}", a.only,
                                            fmt::join(cases, ", ")));
   std::error_code error;
   std::filesystem::create_directories(a.out, error);
   if (error) return refuse("reproduce", fmt::format("{}: {}", a.out, error.message()));
   const Reproduction all = measured(a);
-  if (!a.quiet) tell_what_is_missing(all);
+  if (!a.quiet) print_missing_data(all);
   if (!write(a.out + "/report.html", reproduction_html(all, a.only))) return kBadInput;
   const bool tables = a.only.empty() || !all.few_sensors.empty();
   if (tables && !write(a.out + "/accuracy.md", accuracy_markdown(all))) return kBadInput;
@@ -81,7 +83,7 @@ int reproduce(const ReproduceArguments& a) {
   if (!a.quiet)
     fmt::print(
         "{}/report.html{}; {}\n", a.out, tables ? fmt::format(", {}/accuracy.md", a.out) : "",
-        list.empty() ? fmt::format("fewer than {} seeds: nothing judged", kSeedsToJudge)
+        list.empty() ? fmt::format("fewer than {} seeds: no promise judged", kSeedsToJudge)
                      : fmt::format("{} of {} promises kept",
                                    static_cast<std::ptrdiff_t>(list.size()) - broken, list.size()));
   return broken > 0 ? kBroken : 0;

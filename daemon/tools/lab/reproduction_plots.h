@@ -7,22 +7,22 @@
 
 namespace framewatch::daemon {
 
-/// Given and identified parameters without noise, one plot a kind: Figures 3 and 5.
+/// Plots given and identified parameters without noise, one plot per kind: Figures 3 and 5.
 std::vector<std::string> given_and_identified(const BuildingReproduction& building);
 
-/// Median errors of k, G and c of some rows by every method, and the least possible.
+/// Plots median errors of k, G and c by every method, and the least possible ones.
 std::vector<std::string> median_errors(const std::vector<const AccuracyRow*>& rows);
 
-/// Identified over given against noise level, one line a parameter, one plot a group of them.
-/// damping: also that of frames and floors (Figure 6; Figure 7 has stiffness only).
+/// Plots identified over given against noise level, one line per parameter, one plot per group.
+/// damping: include that of frames and floors (Figure 6; Figure 7 has stiffness only).
 std::vector<std::string> noise_influence(const NoiseSweep& sweep,
                                          const std::vector<Eigen::VectorXd>& ratio,
                                          const std::string& method, int color, bool damping);
 
-/// Share of parameters published, and published wrong, against noise level.
+/// Plots the shares of parameters published, and published wrong, against noise level.
 std::string excitation_plot(const ExcitationSweep& sweep);
 
-/// Boxplots of the stiffnesses of one stage by every method, frames and floors: Figure 10.
+/// Draws boxplots of the stiffnesses of one stage by every method, frames and floors: Figure 10.
 std::vector<std::string> stage_boxes(const TableTest& test, const TableStage& stage);
 
 }  // namespace framewatch::daemon

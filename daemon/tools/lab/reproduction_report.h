@@ -6,12 +6,12 @@
 
 namespace framewatch::daemon {
 
-/// Everything as one HTML page, the same bytes for the same results. only: as given to
-/// reproduce_paper(); the commands in the page repeat it.
+/// Returns everything as one HTML page; the same results give the same bytes. only: the argument of
+/// reproduce_paper(), for the commands that the page names.
 std::string reproduction_html(const Reproduction& all, const std::string& only);
 
-/// docs/accuracy.md. Needs the whole reproduction (no --case); everything in it comes from seeded
-/// motions, so it is the same with and without FRAMEWATCH_DATA.
+/// Returns the tables of accuracy as Markdown, the accuracy.md that `reproduce` writes. They come
+/// from seeded motions, so they are the same with and without FRAMEWATCH_DATA.
 std::string accuracy_markdown(const Reproduction& all);
 
 }  // namespace framewatch::daemon

@@ -5,9 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "daemon/tools/lab/data_files.h"
 #include "daemon/tools/lab/demo_files.h"
-#include "daemon/tools/lab/measured_table.h"
-#include "daemon/tools/lab/paper_motions.h"
 #include "daemon/tools/simulation/scenario.h"
 #include "daemon/tools/simulation/simulation.h"
 #include "estimator/motion/svd_denoise.h"
@@ -35,7 +34,7 @@ Eigen::MatrixXd prepared(const Eigen::MatrixXd& accel, Way way) {
   return out;
 }
 
-/// The 500 windows of every stage by one method. The gate holds for framewatch; the paper has none.
+/// Identifies the 500 windows of every stage by one method. Only framewatch has a gate.
 std::vector<IdentifiedWindows> identify(estimator::PipelineConfig config,
                                         const Eigen::MatrixXd& accel,
                                         const std::vector<Stage>& stages, Way way) {
@@ -82,7 +81,7 @@ TableTest run(const estimator::PipelineConfig& config, const Eigen::MatrixXd& ac
   return test;
 }
 
-/// The motion scaled to a peak, at rest after kShaken_s.
+/// Returns the motion scaled to a peak, at rest after kShaken_s.
 estimator::GroundMotion cut(estimator::GroundMotion motion) {
   const double scale = kPeak_mps2 / motion.peak();
   motion.accel.resize(std::min(

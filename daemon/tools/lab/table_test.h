@@ -11,10 +11,10 @@
 
 namespace framewatch::daemon {
 
-/// One way to identify, over the windows of one stage of a test: Figure 10 of the paper.
+/// Values of one method over the windows of one stage of a test: Figure 10 of the paper.
 struct IdentifiedWindows {
   std::string method;
-  /// [parameter][window], SI; NaN where nothing was published.
+  /// [parameter][window], SI; NaN: not published.
   std::vector<std::vector<double>> values;
 };
 
@@ -31,12 +31,13 @@ struct TableTest {
   std::vector<TableStage> stages;
 };
 
-/// The two-story table of configs/scenario_table_two_story.toml, shaken at 30 degrees by El Centro
-/// (scaled to 2 m/s^2; when `data` has it) or the scenario's motion until 20 s, then left alone.
+/// Shakes the two-story table of configs/scenario_table_two_story.toml at 30 degrees until 20 s,
+/// then leaves it alone. The motion is El Centro, scaled to 2 m/s^2, if `data` has it, otherwise
+/// the scenario's.
 TableTest virtual_table_test(const std::string& data, const Workers& workers);
 
-/// The Northridge run of the measured three-story table, plane, 1 kg floors; empty without the
-/// data.
+/// Evaluates the Northridge run of the measured three-story table, plane, with 1 kg floors. Returns
+/// nullopt without the data.
 std::optional<TableTest> measured_table_test(const std::string& data, const Workers& workers);
 
 }  // namespace framewatch::daemon

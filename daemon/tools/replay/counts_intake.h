@@ -12,36 +12,38 @@
 
 namespace framewatch::daemon {
 
-/// Whether an LCM channel is one of those in the raw logs of a history.
+/// Returns true if `channel` is an LCM channel of a history's raw logs: sample counts or their
+/// channel table.
 bool is_of_raw_log(const std::string& channel);
 
-/// Samples out of the raw logs of a history: accel_counts_t, whose channels are those axes that
-/// have their names. What the sensor did not say comes as NaN.
+/// Decodes the samples of a history's raw logs: accel_counts_t messages, whose channels are matched
+/// with sensor axes by name. Missing readings become NaN.
 class CountsIntake {
  public:
   using Sink = std::function<void(const estimator::AccelSample&)>;
 
-  /// Names of the sensor axes, in their order.
+  /// axes: names of the sensor axes; the index of a name is the axis of its samples.
   explicit CountsIntake(std::vector<std::string> axes) : axes_(std::move(axes)) {}
 
-  /// One message of a channel that is_of_raw_log(), whose samples go to `sink` in the order in
-  /// which they were received. `malformed`: it is not what the channel says, or comes before the
-  /// table of the channels; then there are none.
+  /// Decodes one message of a channel for which is_of_raw_log() is true, and passes its samples to
+  /// `sink` in the order in which they were received. Returns `malformed`, without samples, when
+  /// the message cannot be decoded or arrives before the channel table.
   drivers::IntakeResult message(const std::string& channel, std::span<const std::uint8_t> data,
                                 const Sink& sink);
-  /// Another log follows, whose table may be another.
+  /// Forgets the channel table: the next log may have another one.
   void log_begins() { place_.clear(); }
 
-  double rate_hz() const { return rate_hz_; }  ///< of the newest table; 0: none, or it does not say
-  /// Of the newest table: channels that no axis is named as, and axes that no channel is.
+  double rate_hz() const { return rate_hz_; }  ///< of the newest table; 0: not given
+  /// Channels of the newest table that no axis is named after.
   const std::vector<std::string>& unknown() const { return unknown_; }
+  /// Axes that the newest table does not name.
   const std::vector<std::string>& missing() const { return missing_; }
 
  private:
   drivers::IntakeResult table(std::span<const std::uint8_t> data);
 
   std::vector<std::string> axes_, unknown_, missing_;
-  std::vector<int> place_;  ///< axis of each channel; -1: none
+  std::vector<int> place_;  ///< axis of each channel; -1: no axis has its name
   double rate_hz_ = 0;
 };
 

@@ -30,7 +30,7 @@ struct Estimate {
   window_estimate_t message;
 };
 
-/// Estimates of one log, as they come.
+/// Reads the estimates of one log in order.
 class EstimateReader {
  public:
   EstimateReader(std::string path, std::vector<std::string>& problems)
@@ -42,20 +42,20 @@ class EstimateReader {
     return false;
   }
 
-  /// The next estimate, on whatever channel; empty at the end and after a problem.
+  /// Returns the channel and estimate that follow; nullopt at the end and after a problem.
   std::optional<std::pair<std::string, Estimate>> next() {
     for (;;) {
       const drivers::LogRead read = log_.next(event_);
       if (read == drivers::LogRead::end) return std::nullopt;
       if (read == drivers::LogRead::event) {
-        if (auto found = look()) return found;
+        if (auto found = decode()) return found;
         if (!problems_.empty()) return std::nullopt;
         continue;
       }
       problems_.push_back(read == drivers::LogRead::error
                               ? fmt::format("{}: {}", path_, log_.error())
-                              : fmt::format("{}: byte {}: {}; `framewatch repair` takes out what "
-                                            "is intact",
+                              : fmt::format("{}: byte {}: {}; `framewatch repair` copies the "
+                                            "intact events",
                                             path_, log_.damage().offset, log_.damage().reason));
       return std::nullopt;
     }
@@ -66,7 +66,8 @@ class EstimateReader {
   const std::string& path() const { return path_; }
 
  private:
-  std::optional<std::pair<std::string, Estimate>> look() {
+  /// Returns the estimate in event_, if it has one, and takes parameter names from it.
+  std::optional<std::pair<std::string, Estimate>> decode() {
     const auto type = drivers::fingerprint(event_.data);
     if (type == parameter_table_t::getHash()) {
       if (const auto table = drivers::decoded<parameter_table_t>(event_.data)) names_ = table->name;
@@ -115,7 +116,7 @@ class Comparison {
     while (more_a || more_b) {
       more_a = more_a && take(a_, &Waiting::a);
       more_b = more_b && take(b_, &Waiting::b);
-      // Nothing comes any more that could go with these.
+      // The other log has ended: these stay without a partner.
       for (auto& [channel, waiting] : waiting_) {
         for (; !more_b && !waiting.a.empty(); waiting.a.pop_front())
           only(waiting.a.front(), result_.only_a);
@@ -174,7 +175,7 @@ class Comparison {
   std::map<std::string, Waiting> waiting_;
 };
 
-/// Offset of the first byte that is not the same; -1: the files are identical.
+/// Returns the offset of the first byte that differs; -1 if the files are identical.
 std::int64_t first_different_byte(const std::string& a, const std::string& b) {
   drivers::InputFile files[2];
   std::vector<std::uint8_t> bytes[2];
@@ -213,7 +214,7 @@ void print_text(const Result& r, std::int64_t byte) {
       "only in B\n",
       r.diff->compared(), r.same_bytes, r.diff->different(), r.only_a, r.only_b);
   if (r.only_a + r.only_b > 0)
-    fmt::print("first window that one of them lacks: {}\n", seconds(r.first_only_us));
+    fmt::print("first window in only one of them: {}\n", seconds(r.first_only_us));
   if (r.tables_differ) fmt::print("parameters: the tables differ\n");
   for (const auto& [subject, fields] : r.diff->spans()) {
     const DifferenceSpan* worst = nullptr;

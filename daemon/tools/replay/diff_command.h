@@ -10,7 +10,8 @@ struct DiffArguments {
   bool quiet = false;
 };
 
-/// framewatch diff. Exit code.
+/// Runs `framewatch diff`. Returns the exit code: 0 when the estimates of both logs are identical,
+/// 1 when they differ, kBadInput when a log cannot be read or has no estimate.
 int diff(const DiffArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -10,7 +10,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// The same building, without whatever only reads the estimates.
+/// Returns the configuration without the parts that only read the estimates.
 Config tuning_only(const Config& config) {
   Config out = config;
   out.watch.reset();
@@ -23,7 +23,8 @@ Config tuning_only(const Config& config) {
   return out;
 }
 
-/// Whether no corner has moved: they follow the square roots of the stiffnesses.
+/// Returns true if no filter's corner moved by more than kMoved. Corners follow the square roots of
+/// the stiffnesses.
 bool holds(const estimator::ParameterTable& table, const Eigen::VectorXd& before,
            const Eigen::VectorXd& now) {
   for (int p = 0; p < table.size(); ++p)
@@ -33,7 +34,7 @@ bool holds(const estimator::ParameterTable& table, const Eigen::VectorXd& before
   return true;
 }
 
-/// One pass, from what it starts with.
+/// Runs one pass over the input, beginning with the tuning `start`.
 class Pass : private EstimationListener {
  public:
   Pass(const Config& config, const std::optional<estimator::Tuning>& start)
@@ -42,7 +43,7 @@ class Pass : private EstimationListener {
     began_ = held_ = theta0();
   }
 
-  /// False when the input cannot be read: the estimation's own pass says why.
+  /// Returns false when the input cannot be read.
   bool read(const Config& config, const TuningInput& input,
             const std::function<void(std::int64_t bytes)>& progress) {
     ReplaySurvey survey(config, input.salvage, input.span);
@@ -56,7 +57,7 @@ class Pass : private EstimationListener {
     return true;
   }
 
-  /// Empty when the record says nothing of it.
+  /// Returns nullopt when the record shows too little motion to tune on.
   std::optional<estimator::Tuning> tuning() const {
     std::optional<estimator::Tuning> out = estimation_.pipeline().tuning();
     if (out && !out->found_right && out->theta0 == began_) out.reset();
@@ -78,8 +79,8 @@ class Pass : private EstimationListener {
   }
 
   Estimation estimation_;
-  Eigen::VectorXd began_, held_;  ///< parameters when the pass began, and since when they hold
-  int windows_ = 0;               ///< with values, for which they have held
+  Eigen::VectorXd began_, held_;  ///< parameters at the pass's start and at the last move
+  int windows_ = 0;               ///< windows with values since held_
 };
 
 }  // namespace
@@ -106,7 +107,7 @@ FirstPasses::FirstPasses(const Config& config, const TuningInput& input,
 
 std::string FirstPasses::note() const {
   return tuning_ ? fmt::format("tuned on the record first: {} passes", passes_ + 1)
-                 : "the record shows too little to tune on first: it is estimated as it comes";
+                 : "the record shows too little motion to tune on first; estimating in one pass";
 }
 
 }  // namespace framewatch::daemon

@@ -7,19 +7,20 @@
 
 namespace framewatch::daemon {
 
-/// CSV of every floor's motion, whether it has a channel or not (docs/formats.md): one row per
-/// instant, accelerations without their means and drift ratios; an empty cell is not known.
+/// Writes the motion of every floor, with or without a channel, as CSV (docs/formats.md). Each
+/// instant has one row: accelerations without their means, m/s^2, and drift ratios. Unknown values
+/// are empty cells.
 class FloorsOutput {
  public:
   explicit FloorsOutput(const estimator::PipelineConfig& config);
 
-  /// These return false, with error(), when the file cannot be written.
+  /// These return false and set error() when the file cannot be written.
   [[nodiscard]] bool open(const std::string& path);
   [[nodiscard]] bool put(const estimator::SampleSet& instant);
   [[nodiscard]] bool close();
   const std::string& error() const { return error_; }
 
-  /// What was identified: floors without a channel move by it from now on.
+  /// Computes floors without a channel with the stiffnesses of `estimate` from now on.
   void follow(const estimator::WindowEstimate& estimate) { response_.follow(estimate); }
 
  private:

@@ -7,7 +7,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMaxNews = 10000;  // events that wait for their period's end
+constexpr std::size_t kMaxNews = 10000;  // events in memory before they are stored
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool HistoryOutput::put(std::int64_t, const std::string& channel,
   const auto kind = intake_.kind_of(channel);
   if (!kind) return error_.empty();
   intake_.take(*kind, bytes);
-  // A longest period at a time: each is summed up once, and not with every one in it.
+  // Store one longest period at a time, so that each is summed up once.
   const SummaryBatch& waits = intake_.batch();
   const auto most = static_cast<std::size_t>(longest_s() / settings_.summary_s.front());
   const bool full = waits.periods.size() > most || waits.events.size() > kMaxNews;

@@ -13,23 +13,25 @@
 
 namespace framewatch::daemon {
 
-/// The messages of an estimation as the tables of a history (docs/history.md), a file that is whole
-/// or not there. The same messages give the same bytes.
+/// Writes the messages of an estimation as the tables of a history (docs/history.md). The file
+/// appears only when it is complete. The same messages give the same bytes.
 class HistoryOutput : public EstimateOutput {
  public:
-  /// Periods are those of `config.history`, or the default ones. `config` must outlive this.
+  /// Takes the summary periods of `config.history`, or the default ones. `config` must outlive
+  /// this.
   explicit HistoryOutput(const Config& config);
 
   [[nodiscard]] bool open(const std::string& path);
-  /// Only what lies in this sensor time is stored, by the start of a period and the time of an
-  /// event. To be called before the first put(); both a multiple of the longest period.
+  /// Limits what is stored to periods that start, and events that happen, from `from_us` to before
+  /// `to_us`, sensor time. Both must be multiples of the longest period. Call it before the first
+  /// put().
   void keep(std::int64_t from_us, std::int64_t to_us);
   [[nodiscard]] bool put(std::int64_t time_us, const std::string& channel,
                          const std::vector<std::uint8_t>& bytes) override;
   [[nodiscard]] bool close() override;
   std::string error() const override { return error_; }
 
-  std::int64_t longest_s() const { return settings_.summary_s.back(); }
+  std::int64_t longest_s() const { return settings_.summary_s.back(); }  ///< the longest period
 
  private:
   bool store();

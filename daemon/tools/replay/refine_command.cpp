@@ -25,15 +25,15 @@ namespace {
 
 constexpr int kNotRefined = 1;
 
-/// Everything a person is told.
+/// Everything that the command prints.
 struct Report {
   double from_s = 0, to_s = 0;
   estimator::Refinement refinement;
   std::vector<double> streaming;    ///< theta order; NaN: not published
-  std::vector<std::string> silent;  ///< channels without samples, which were done without
+  std::vector<std::string> silent;  ///< channels without samples, which were left out
 };
 
-/// What is refined: the stretch without the channels that have no sample in it.
+/// The stretch that is refined, without the channels that have no sample in it.
 struct RefinedSegment {
   estimator::PipelineConfig config;
   Eigen::MatrixXd accel;
@@ -62,7 +62,7 @@ RefinedSegment without_silent_channels(const estimator::PipelineConfig& config,
   return out;
 }
 
-/// The design of what is identified, SI.
+/// Returns the design of the identified parameters, SI.
 Eigen::VectorXd design_of(const estimator::PipelineConfig& c) {
   const estimator::ParameterTable table = c.parameters(), stories(c.structure);
   const Eigen::VectorXd design =
@@ -112,11 +112,11 @@ std::string text(const estimator::ParameterTable& table, const Report& report) {
       fmt::format("{:.3f} s to {:.3f} s: {}\n", report.from_s, report.to_s, status_word(r.status));
   if (!r.has_values()) return out;
   out += fmt::format(
-      "{} steps, {:.2f} to {:.2f} Hz, log-likelihood {:.6g}; misfit {:.3g} of what sensor noise "
-      "explains\n",
+      "{} steps, {:.2f} to {:.2f} Hz, log-likelihood {:.6g}; misfit {:.3g} times what sensor "
+      "noise explains\n",
       r.iterations, r.band.low_hz, r.band.high_hz, r.log_likelihood, r.misfit_ratio);
   for (const std::string& name : report.silent)
-    out += fmt::format("channel {} has no samples: done without it\n", printable(name));
+    out += fmt::format("channel {} has no samples and was left out\n", printable(name));
   out += fmt::format("{:<12} {:>12} {:>12} {:>12} {:>12}  {}\n", "parameter", "streaming",
                      "refined", "std error", "least error", "unit");
   for (int p = 0; p < table.size(); ++p)
@@ -124,7 +124,7 @@ std::string text(const estimator::ParameterTable& table, const Report& report) {
                        value_text(report.streaming[std::size_t(p)]), value_text(r.theta[p]),
                        value_text(r.std_error[p]), value_text(r.bound[p]), table[p].unit);
   out +=
-      "streaming: the last published value up to the end of the stretch, - if none; least "
+      "streaming: the last value published by the end of the stretch, or - without one; least "
       "error: Cramer-Rao bound\n";
   return out;
 }
@@ -199,11 +199,11 @@ int refine(const RefineArguments& a) {
     if (report.streaming.back() > 0) start[p] = report.streaming.back();
   }
   estimator::RefineOptions options;
-  // Without drawings the design is a guess: nothing to be pulled to.
   progress.part_begins();
   options.progress = [&](int step) {
     progress(fmt::format("step {} of {} at most", step, options.max_iterations), 0);
   };
+  // Without drawings the design is a guess, which must not pull the parameters.
   options.prior = a.prior && pipeline_config.options.prior && pipeline_config.design.size() > 0;
   report.refinement = refine_max_likelihood(segment.config, segment.accel,
                                             options.prior ? design : start, start, options);

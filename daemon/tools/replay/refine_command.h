@@ -14,10 +14,11 @@ struct RefineArguments {
   double to_s = -1;                 ///< since the first sample; negative: one window after from_s
   bool prior = true;
   bool json = false;
-  RecordFileArguments record = {};  ///< what record files do not say themselves
+  RecordFileArguments record = {};  ///< options that record files do not state themselves
 };
 
-/// framewatch refine. Exit code: 0 refined, 1 not (status says why), 2 bad usage or input.
+/// Runs `framewatch refine`. Returns the exit code: 0 refined, 1 not refined (the printed status
+/// gives the reason), 2 bad usage or input.
 int refine(const RefineArguments& arguments);
 
 }  // namespace framewatch::daemon

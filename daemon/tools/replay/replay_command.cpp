@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <ratio>
+#include <thread>
 
 #include <framewatch/event_t.hpp>
 
@@ -19,12 +24,10 @@
 #include "daemon/monitor/estimates/estimate_output.h"
 #include "daemon/monitor/estimation/state_file.h"
 #include "daemon/monitor/event_report/event_report_files.h"
-#include "daemon/tools/replay/expectation_check.h"
+#include "daemon/tools/replay/expectation.h"
 #include "daemon/tools/replay/first_passes.h"
 #include "daemon/tools/replay/floors_output.h"
 #include "daemon/tools/replay/history_output.h"
-#include "daemon/tools/replay/replay_arguments.h"
-#include "daemon/tools/replay/replay_pace.h"
 #include "daemon/tools/replay/replay_summary.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/files/text_output.h"
@@ -36,13 +39,44 @@ namespace {
 constexpr int kNotAsExpected = 1;
 using Clock = std::chrono::steady_clock;
 
-/// Says all that is wrong. False when replay must not go on.
+/// Returns true if an output is the database of a history.
+bool is_history(const std::string& out) {
+  return out.ends_with(".sqlite");
+}
+
+/// Waits until an event's time has come, at `speed` times real time. Does not wait for a step back
+/// or a step of more than kLongest_us, such as the night between two logs.
+class Pace {
+ public:
+  explicit Pace(double speed) : speed_(speed) {}
+  void wait_for(std::int64_t time_us) {
+    if (speed_ <= 0) return;
+    std::int64_t step_us = 0;
+    const bool usual = started_ && !__builtin_sub_overflow(time_us, newest_us_, &step_us) &&
+                       step_us >= 0 && step_us <= kLongest_us;
+    if (usual)
+      due_ += std::chrono::duration_cast<Clock::duration>(
+          std::chrono::duration<double, std::micro>(static_cast<double>(step_us) / speed_));
+    started_ = true;
+    newest_us_ = time_us;
+    std::this_thread::sleep_until(due_);
+  }
+
+ private:
+  static constexpr std::int64_t kLongest_us = 10'000'000;
+  double speed_;
+  bool started_ = false;
+  std::int64_t newest_us_ = 0;
+  Clock::time_point due_ = Clock::now();
+};
+
+/// Prints the survey's notes and problems. Returns false when the replay must stop.
 bool judge(const ReplaySurvey& survey) {
   for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", printable_lines(note));
   for (const std::string& problem : survey.problems())
     fmt::print(stderr, "{}\n", printable_lines(problem));
   if (survey.salvageable())
-    fmt::print(stderr, "framewatch replay: --salvage uses what is intact\n");
+    fmt::print(stderr, "framewatch replay: --salvage uses the intact parts\n");
   return survey.problems().empty();
 }
 
@@ -56,7 +90,7 @@ std::int64_t bytes_of(const std::vector<std::string>& paths) {
   return sum;
 }
 
-/// One replay, from the first byte to the summary.
+/// Runs one replay, from the first byte to the summary.
 class ReplayRun : private EstimationListener {
  public:
   ReplayRun(const ReplayArguments& a, const Config& config,
@@ -86,7 +120,7 @@ class ReplayRun : private EstimationListener {
     }
     tune_first();
     if (!open_outputs()) return kBadInput;
-    // At a pace the person should not learn after an hour that the end of the log is damaged.
+    // In real time the user should not wait an hour to learn that the log's end is damaged.
     if (a_.speed > 0 && !sound_beforehand()) return kBadInput;
     read_everything();
     if (a_.speed > 0 ? !survey_.problems().empty() : !judge(survey_)) return kBadInput;
@@ -118,7 +152,7 @@ class ReplayRun : private EstimationListener {
     if (failed_.empty() && floors_ && !floors_->put(instant)) failed_ = floors_->error();
   }
 
-  /// Empty when no output needs messages.
+  /// Returns an empty function when no output needs messages.
   MessageSink sink() {
     const bool wanted = !a_.out.empty() || a_.lcm || config_.watch ||
                         (expectations_.has_value() && !expectations_->events.empty());
@@ -163,8 +197,8 @@ class ReplayRun : private EstimationListener {
     return judge(survey);
   }
 
-  /// Where the input is a whole: what goes on elsewhere, or has begun there, is estimated as it
-  /// comes, so that its parts together are the same as the uncut input with --one-pass.
+  /// Tunes on the input, unless it is part of a longer one. Parts are estimated in one pass, so
+  /// that together they give the same as the uncut input with --one-pass.
   void tune_first() {
     if (a_.one_pass || !a_.load_state.empty() || !a_.save_state.empty() || !can_be_tuned(config_))
       return;
@@ -185,7 +219,7 @@ class ReplayRun : private EstimationListener {
     });
     for (const std::string& path : a_.inputs) survey_.add(path);
     survey_.finish();
-    if (a_.save_state.empty()) estimation_.finish();  // else it has not ended
+    if (a_.save_state.empty()) estimation_.finish();  // otherwise the input continues
   }
 
   void put(std::int64_t time_us, const std::string& channel,
@@ -235,20 +269,20 @@ class ReplayRun : private EstimationListener {
         fmt::print(to, "\nas expected: {} of {}\n", checks.size(), a_.expect);
     }
     if (holds) return 0;
-    tell_differences(checks);
+    print_differences(checks);
     return kNotAsExpected;
   }
 
   std::string write_baseline() const {
     const estimator::Baseline baseline = learner_.so_far();
     if (baseline.known() == 0)
-      return "--write-baseline: no parameter has a value in half of the windows that the design "
-             "does not pull";
+      return "--write-baseline: no parameter has a value, free of the design's influence, in half "
+             "of the windows";
     return drivers::write_text_file(a_.write_baseline,
                                     baseline_text(baseline, config_.pipeline.parameters()));
   }
 
-  void tell_differences(const std::vector<Check>& checks) const {
+  void print_differences(const std::vector<Check>& checks) const {
     int differences = 0;
     for (const Check& c : checks) {
       if (c.holds) continue;
@@ -270,7 +304,7 @@ class ReplayRun : private EstimationListener {
   Clock::time_point start_ = Clock::now();
   std::optional<Expectations> expectations_;
   std::string event_channel_;
-  std::int64_t events_before_ = 0;  ///< of parts before this one
+  std::int64_t events_before_ = 0;  ///< events of the earlier parts
   ReplaySurvey survey_;
   estimator::BaselineLearner learner_;
   EstimateSeries series_;
@@ -283,6 +317,48 @@ class ReplayRun : private EstimationListener {
 };
 
 }  // namespace
+
+bool writes_standard_output(const ReplayArguments& a) {
+  const auto outputs = {a.out, a.write_expect, a.write_baseline, a.junit, a.floors};
+  return std::find(outputs.begin(), outputs.end(), drivers::kStandardOutput) != outputs.end();
+}
+
+std::vector<std::string> argument_problems(const ReplayArguments& a) {
+  std::vector<std::string> found;
+  if (!a.out.empty() && !is_history(a.out))
+    if (const std::string problem = problem_of_output_name(a.out); !problem.empty())
+      found.push_back(problem);
+  std::vector<std::string> inputs = a.inputs;
+  inputs.push_back(a.config);
+  for (const std::string& input : {a.expect, a.load_state})
+    if (!input.empty()) inputs.push_back(input);
+  for (const std::string& out :
+       {a.out, a.write_expect, a.write_baseline, a.junit, a.save_state, a.floors})
+    for (const std::string& input : inputs) {
+      std::error_code error;
+      if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
+        found.push_back(input + ": is input and output; name another output");
+    }
+  if (!a.junit.empty() && a.expect.empty())
+    found.push_back("--junit: needs --expect, whose expectations are its test cases");
+  if (!a.expect.empty() && !a.write_expect.empty())
+    found.push_back("--write-expect: cannot be combined with --expect");
+  if (a.json && writes_standard_output(a))
+    found.push_back("--json: needs standard output, but an output is named -");
+  if (!a.floors.empty() && a.floors == a.out)
+    found.push_back("--floors: " + a.floors + " is also the file of --out");
+  if (!a.floors.empty() && !a.floors.ends_with(".csv") && !a.floors.ends_with(".csv.gz") &&
+      a.floors != drivers::kStandardOutput)
+    found.push_back("--floors: writes .csv or .csv.gz, not " + a.floors);
+  if (!(a.span.to_s > a.span.from_s)) found.push_back("--to: must be later than --from");
+  if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog") || is_history(a.out)))
+    found.push_back(
+        "--boxplot: is for --out with .csv or .mat; a log or .sqlite always has boxplots");
+  if (is_history(a.out) && !a.load_state.empty())
+    found.push_back(
+        "--load-state: cannot be combined with --out .sqlite, which needs whole periods");
+  return found;
+}
 
 int replay(const ReplayArguments& a) {
   const std::vector<std::string> wrong = argument_problems(a);

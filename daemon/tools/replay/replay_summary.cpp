@@ -7,12 +7,11 @@
 
 #include "daemon/base/json_text.h"
 #include "daemon/monitor/estimates/estimate_table.h"
-#include "daemon/tools/replay/can_summary.h"
 
 namespace framewatch::daemon {
 namespace {
 
-/// Why a parameter was seldom or never observable: the most frequent reasons.
+/// Returns the two most frequent reasons why a parameter was not observable.
 std::string reasons(const EstimateSeries::Series& series) {
   std::array<int, 6> order{1, 2, 3, 4, 5, kTooUncertain};
   const auto count = [&](int reason) { return series.reasons[static_cast<std::size_t>(reason)]; };
@@ -22,6 +21,59 @@ std::string reasons(const EstimateSeries::Series& series) {
     if (count(reason) > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", reason_word(reason), count(reason));
   return text;
+}
+
+/// Returns the counts of the CAN nodes as text of several lines; empty without CAN.
+std::string can_text(const drivers::CanIntake& can) {
+  if (can.map().empty()) return {};
+  std::string out;
+  for (std::size_t b = 0; b < can.buses().size(); ++b) {
+    const drivers::CanBusCounters& bus = can.buses()[b];
+    out += fmt::format("{}: {} frames, {} of other devices, {} SYNC, {} error frames\n",
+                       can.map().buses[b].interface, bus.frames, bus.foreign, bus.syncs,
+                       bus.error_frames);
+  }
+  out +=
+      fmt::format("{:<14} {:>9} {:>9} {:>7} {:>6} {:>6} {:>9} {:>7} {:>9}\n", "CAN node", "rate_Hz",
+                  "received", "lost", "late", "twice", "reordered", "no time", "malformed");
+  for (std::size_t n = 0; n < can.map().nodes.size(); ++n) {
+    const drivers::CanNodeCounters c = can.node(n);
+    out += fmt::format("{:<14} {:>9.4f} {:>9} {:>7} {:>6} {:>6} {:>9} {:>7} {:>9}\n",
+                       can.map().nodes[n].name, c.rate_hz(), c.received, c.lost, c.late,
+                       c.duplicates, c.reordered, c.unplaced, c.wrong_length + c.wrong_kind);
+    for (const drivers::CanMessageMap& m : can.map().nodes[n].messages)
+      for (const drivers::CanReading& r : m.readings) {
+        if (r.sample > 0) continue;
+        const drivers::CanRange& range = can.range_of(static_cast<std::size_t>(r.axis));
+        out += fmt::format("  {}.{}: {} values from {:g} to {:g}\n", m.name, r.name, range.count,
+                           range.least, range.most);
+      }
+  }
+  return out + "\n";
+}
+
+/// Returns the JSON members can_nodes and can_buses, each with a comma after it; empty without CAN.
+std::string can_json(const drivers::CanIntake& can) {
+  if (can.map().empty()) return {};
+  std::string out = "\"can_nodes\": [";
+  for (std::size_t n = 0; n < can.map().nodes.size(); ++n) {
+    const drivers::CanNodeCounters c = can.node(n);
+    out += fmt::format(
+        "{}\n  {{\"name\": {}, \"rate_hz\": {}, \"received\": {}, \"lost\": {}, \"late\": {}, "
+        "\"duplicates\": {}, \"reordered\": {}, \"unplaced\": {}, \"malformed\": {}}}",
+        n == 0 ? "" : ",", json_text(can.map().nodes[n].name), json_number(c.rate_hz()), c.received,
+        c.lost, c.late, c.duplicates, c.reordered, c.unplaced, c.wrong_length + c.wrong_kind);
+  }
+  out += "],\n \"can_buses\": [";
+  for (std::size_t b = 0; b < can.buses().size(); ++b) {
+    const drivers::CanBusCounters& bus = can.buses()[b];
+    out += fmt::format(
+        "{}\n  {{\"interface\": {}, \"frames\": {}, \"foreign\": {}, \"syncs\": {}, "
+        "\"error_frames\": {}}}",
+        b == 0 ? "" : ",", json_text(can.map().buses[b].interface), bus.frames, bus.foreign,
+        bus.syncs, bus.error_frames);
+  }
+  return out + "],\n ";
 }
 
 }  // namespace
@@ -61,13 +113,11 @@ ReplayCounts replay_counts(const Estimation& estimation) {
 
 std::string why_no_window(const Config& config, const Estimation& estimation, double motion_s) {
   const estimator::EstimatorOptions& o = config.pipeline.options;
-  const double least_s = o.window_s + o.settle_s;
-  if (motion_s < least_s)
+  if (motion_s < std::max(o.window_s, o.hop_s))
     return fmt::format(
-        "no window: there are {:.4g} s of motion, and the first window ends {:g} s after the first "
-        "sample at the earliest (estimator.window_s {:g} s, after settle_s {:g} s or more in which "
-        "the filters settle)",
-        motion_s, least_s, o.window_s, o.settle_s);
+        "no window: there are {:.4g} s of motion, too few samples to fill the estimator's filters. "
+        "Give a record of at least {:g} s (estimator.window_s)",
+        motion_s, std::max(o.window_s, o.hop_s));
   std::string silent;
   const auto counters = estimation.axis_counters();
   for (std::size_t i = 0; i < counters.size() && i < config.pipeline.axes.size(); ++i)
@@ -75,7 +125,8 @@ std::string why_no_window(const Config& config, const Estimation& estimation, do
       silent += (silent.empty() ? "" : ", ") + config.pipeline.axes[i].name;
   if (!silent.empty()) return "no window: there is no sample of " + silent;
   return fmt::format(
-      "no window: the filters had not settled, or {} interruptions made every window start anew",
+      "no window: the channels have too few samples at the same times; {} interruptions restarted "
+      "the estimation",
       estimation.pipeline().counters().interruptions);
 }
 

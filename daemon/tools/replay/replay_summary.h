@@ -11,24 +11,24 @@
 
 namespace framewatch::daemon {
 
-/// Counts of a replay's input, by the names that summary and expectations use.
+/// Counts of a replay, by the names that summary and expectations use.
 using ReplayCounts = std::array<std::pair<const char*, std::int64_t>, 10>;
 ReplayCounts replay_counts(const Estimation& estimation);
 
-/// What replay prints at the end: counts, and each parameter over all its observable windows.
+/// Summary at the end of a replay: counts, and each parameter over all its observable windows.
 struct ReplaySummary {
   const EstimateSeries& series;
   const ReplayCounts& counts;
   const ReplaySurvey& survey;
   const drivers::CanIntake& can;
-  double work_s;  ///< wall time the replay took
+  double work_s;  ///< wall time of the replay
 
   std::string text() const;
-  /// Without the closing brace: more members may follow.
+  /// Returns a JSON object without its closing brace, so that the caller can append members.
   std::string json() const;
 };
 
-/// Why no window came out of `motion_s` seconds of samples, for a person.
+/// Returns a line for the user that says why `motion_s` seconds of samples gave no window.
 std::string why_no_window(const Config& config, const Estimation& estimation, double motion_s);
 
 }  // namespace framewatch::daemon

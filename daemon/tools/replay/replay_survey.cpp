@@ -5,14 +5,19 @@
 #include <filesystem>
 #include <utility>
 
+#include <framewatch/accel_counts_t.hpp>
+#include <framewatch/channel_table_t.hpp>
+
 #include <fmt/core.h>
 
+#include "daemon/base/median.h"
 #include "daemon/config/axis_names.h"
 #include "daemon/config/header_differences.h"
 #include "drivers/can/can_log.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/lcm/message_check.h"
+#include "drivers/lcm/count_block.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -28,6 +33,25 @@ bool looks_like_record(const std::string& path) {
          drivers::is_network_file(path);
 }
 
+constexpr double kRateTolerance = 0.02;
+constexpr std::size_t kRateLag = 100;  ///< samples; times may be rounded to whole milliseconds
+
+std::string list(const std::map<std::string, std::int64_t>& channels) {
+  std::string text;
+  int shown = 0;
+  for (const auto& [name, count] : channels) {
+    if (++shown > 10) return text + ", ...";
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, count);
+  }
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
 }  // namespace
 
 ReplaySurvey::ReplaySurvey(const Config& config, bool salvage, ReplaySpan span)
@@ -41,7 +65,7 @@ ReplaySurvey::ReplaySurvey(const Config& config, bool salvage, ReplaySpan span)
           wanted_axes(config), [](const estimator::AccelSample&) {}, intake_settings(config)),
       counts_(axis_names(config)) {}
 
-void ReplaySurvey::fault(std::string message) {
+void ReplaySurvey::add_fault(std::string message) {
   if (!salvage_) ++faults_;
   (salvage_ ? notes_ : problems_).push_back(std::move(message));
 }
@@ -87,21 +111,20 @@ void ReplaySurvey::add_record(ReplayInput input) {
   const drivers::Record& record = input.record;
   for (const std::string& note : record.notes) notes_.push_back(input.path + ": " + note);
   const auto& axes = config_.pipeline.axes;
-  int found = 0;
-  std::string others;
+  std::vector<std::string> others;
   for (const std::string& name : record.names) {
     const auto at = std::find_if(axes.begin(), axes.end(), [&](const estimator::SensorAxis& axis) {
       return axis.name == name;
     });
     input.axis_of_column.push_back(at == axes.end() ? -1 : static_cast<int>(at - axes.begin()));
-    found += at != axes.end();
-    if (at == axes.end()) others += (others.empty() ? "" : ", ") + name;
+    if (at == axes.end()) others.push_back(name);
   }
-  if (found == 0)
+  if (others.size() == record.names.size())
     problems_.push_back(fmt::format("{}: no column is named like a channel of {}; it has {}",
-                                    input.path, config_.path, others));
+                                    input.path, config_.path, joined(others)));
   else if (!others.empty())
-    notes_.push_back(fmt::format("{}: columns without a channel ignored: {}", input.path, others));
+    notes_.push_back(
+        fmt::format("{}: ignored columns without a channel: {}", input.path, joined(others)));
   for (const std::string& difference : header_differences(config_, record))
     notes_.push_back(fmt::format("{}: {}", input.path, difference));
   check_rate(input.path, record.rate_hz);
@@ -128,7 +151,8 @@ void ReplaySurvey::give_record(const ReplayInput& input) {
   }
 }
 
-/// The first time it is asked about is the zero of the span.
+/// Returns true if a sensor time lies outside the span. Without zero_us, the first time passed is
+/// the span's zero.
 bool ReplaySurvey::outside(std::int64_t time_us) {
   if (!spanned_) return false;
   if (span_zero_us_ == std::numeric_limits<std::int64_t>::min()) span_zero_us_ = time_us;
@@ -147,7 +171,7 @@ bool ReplaySurvey::left_out(const drivers::LogEvent& event) {
     place_ = !is_outside ? Place::inside : time_s < span_.from_s ? Place::before : Place::after;
   }
   if (place_ != Place::before) return place_ == Place::after;
-  // Tables before the span say which channels are whose.
+  // Tables before the span name the channels within it.
   return goes_on_ || drivers::stream_of_table(event.channel).empty();
 }
 
@@ -177,18 +201,18 @@ void ReplaySurvey::add_log(const std::string& path) {
     if (read == drivers::LogRead::event) {
       if (step_)
         step_(bytes_ + reader.position() * packed_bytes / reader.size(), event.timestamp_us);
-      look_at(event, seen);
+      take_event(event, seen);
       continue;
     }
     damaged_bytes_ += reader.damage().bytes;
     if (++damages <= kDamageLines)
-      fault(fmt::format("{}: byte {}: {}, {} bytes skipped: {}", path, reader.damage().offset,
-                        read == drivers::LogRead::truncated ? "truncated" : "damaged",
-                        reader.damage().bytes, reader.damage().reason));
+      add_fault(fmt::format("{}: byte {}: {}, {} bytes skipped: {}", path, reader.damage().offset,
+                            read == drivers::LogRead::truncated ? "truncated" : "damaged",
+                            reader.damage().bytes, reader.damage().reason));
   }
   if (damages > kDamageLines)
-    fault(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
-                      damaged_bytes_ - damaged_before));
+    add_fault(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
+                          damaged_bytes_ - damaged_before));
   if (intake().backwards() == backwards) seen.backwards_offset = -1;  // it was another sender's
   judge_log(path, seen, intake().counters().malformed - malformed);
   inputs_.push_back({path, false, {}, {}});
@@ -231,23 +255,23 @@ void ReplaySurvey::add_candump(const std::string& path) {
           unfed.frame(bus, frame);
       },
       found);
-  for (const drivers::Problem& p : found) fault(fmt::format("{}: {}", p.where, p.message));
+  for (const drivers::Problem& p : found) add_fault(fmt::format("{}: {}", p.where, p.message));
   for (const auto& [interface, count] : others)
-    notes_.push_back(fmt::format("{}: {} frames of {}, which {} does not have, ignored", path,
-                                 count, interface, config_.path));
+    notes_.push_back(fmt::format("{}: ignored {} frames of {}, an interface that {} does not use",
+                                 path, count, interface, config_.path));
   if (taken() == before && !spanned_)
     problems_.push_back(fmt::format("{}: no frame for the channels of {}", path, config_.path));
   if (first_us <= last_us) extend(path, first_us, last_us);
   inputs_.push_back({path, false, {}, {}});
 }
 
-void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
+void ReplaySurvey::take_event(const drivers::LogEvent& event, LogSeen& seen) {
   ++seen.events;
   if (seen.newest == nullptr || seen.newest->first != event.channel)
     seen.newest = &*seen.channels.try_emplace(event.channel, 0).first;
   ++seen.newest->second;
   if (is_of_raw_log(event.channel)) {
-    look_at_counts(event, seen);
+    take_counts(event, seen);
     return;
   }
   if (left_out(event)) {
@@ -286,15 +310,15 @@ void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
   if (node.stamps.size() < kStampsPerNode) node.stamps.push_back({sample.sequence, time_us});
 }
 
-// Where one log is cut and the next one begins the nodes need not have come equally far.
+// Nodes need not stop at the same time at the end of a log, so the next one may begin earlier by
+// lateness_s.
 bool ReplaySurvey::extend(const std::string& path, std::int64_t first_us, std::int64_t last_us) {
   const auto allowed_us = static_cast<std::int64_t>(config_.pipeline.options.lateness_s * 1e6);
   const bool in_order = !any_ || first_us > last_us_ - allowed_us;
   if (!in_order)
     problems_.push_back(
         fmt::format("{}: its time, {:.6f} s to {:.6f} s, is not after {}, which ends at {:.6f} s: "
-                    "give the files "
-                    "in order of time, without overlap",
+                    "give the files in order of time, without overlap",
                     path, static_cast<double>(first_us) * 1e-6, static_cast<double>(last_us) * 1e-6,
                     last_path_, static_cast<double>(last_us_) * 1e-6));
   first_us_ = any_ ? std::min(first_us_, first_us) : first_us;
@@ -311,13 +335,120 @@ void ReplaySurvey::finish() {
                                       [](const ReplayInput& input) { return input.is_record; });
   if (!only_logs || !problems_.empty()) return;
   if (declared_)
-    problems_.push_back("--unit, --step and the like are for record files: a log says them itself");
-  std::string names;
-  for (const std::string& name : any_raw_ ? counts_.missing() : intake().binding().unbound())
-    names += (names.empty() ? "" : ", ") + name;
+    problems_.push_back("--unit, --step and the like are for record files: a log contains them");
+  const std::string names = joined(any_raw_ ? counts_.missing() : intake().binding().unbound());
   if (!names.empty())
     notes_.push_back(
         fmt::format("channels of {} that no message carries: {}", config_.path, names));
+}
+
+void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed) {
+  if (seen.is_raw) {
+    judge_raw_log(path, seen);
+    return;
+  }
+  const std::string malformed_text = fmt::format(
+      "{}: byte {}: {} messages on our channels are not accel_t or channel_table_t, the first: {}",
+      path, seen.first_malformed_offset, malformed, seen.malformed);
+  if (malformed > 0 && seen.samples > 0) add_fault(malformed_text);
+  if (malformed > 0 && seen.samples == 0) problems_.push_back(malformed_text);
+  if (seen.elsewhere_offset >= 0)
+    add_fault(
+        fmt::format("{}: byte {}: a channel table puts channels elsewhere than their source in {}. "
+                    "The configuration applies. `framewatch convert --config` makes a log that "
+                    "agrees with it from a record",
+                    path, seen.elsewhere_offset, config_.path));
+  if (seen.renamed_offset >= 0)
+    notes_.push_back(
+        fmt::format("{}: byte {}: a channel table names channels differently from {}. The "
+                    "configuration's sources apply",
+                    path, seen.renamed_offset, config_.path));
+  if (seen.infinite_offset >= 0)
+    add_fault(fmt::format("{}: byte {}: infinite acceleration", path, seen.infinite_offset));
+  if (seen.events == 0)
+    problems_.push_back(fmt::format("{}: holds no intact LCM event", path));
+  else if (seen.samples == 0 && malformed == 0 && !seen.left_out)
+    problems_.push_back(fmt::format("{}: no message for the channels of {}; it has {}", path,
+                                    config_.path, list(seen.channels)));
+  const bool in_order = seen.samples == 0 || extend(path, log_first_us_, log_last_us_);
+  if (in_order && seen.backwards_offset >= 0)
+    problems_.push_back(fmt::format(
+        "{}: byte {}: time runs backwards: a node's sample is not newer than the one before", path,
+        seen.backwards_offset));
+  std::sort(stamps_.begin(), stamps_.end(),
+            [](const NodeStamps& a, const NodeStamps& b) { return a.place < b.place; });
+  for (const auto& [node, stamps] : stamps_) {
+    if (stamps.empty()) continue;
+    const std::size_t lag = std::min(kRateLag, stamps.size() - 1);
+    std::vector<double> steps;
+    for (std::size_t i = lag; lag > 0 && i < stamps.size(); ++i) {
+      const auto sequence_step = stamps[i].sequence - stamps[i - lag].sequence;
+      const auto time_step_us = stamps[i].time_us - stamps[i - lag].time_us;
+      if (sequence_step > 0 && time_step_us > 0)
+        steps.push_back(static_cast<double>(time_step_us) / static_cast<double>(sequence_step));
+    }
+    if (steps.empty()) continue;
+    check_rate(fmt::format("{}: {} node {}", path, node.first, node.second),
+               1e6 / median(std::move(steps)));
+  }
+}
+
+void ReplaySurvey::check_rate(const std::string& place, double rate_hz) {
+  const double configured = config_.pipeline.options.rate_hz;
+  if (std::abs(rate_hz / configured - 1) > kRateTolerance)
+    problems_.push_back(fmt::format("{}: sampled at {:.4g} Hz, but {} says rate_hz = {:g}", place,
+                                    rate_hz, config_.path, configured));
+}
+
+/// Takes an event of a raw log. An intake has checked its samples already when they were recorded.
+void ReplaySurvey::take_counts(const drivers::LogEvent& event, LogSeen& seen) {
+  seen.is_raw = any_raw_ = true;
+  const auto give = [&](const estimator::AccelSample& sample) {
+    const std::int64_t time_us = to_microseconds(sample.time);
+    if (outside(time_us)) {
+      seen.left_out = true;
+      const bool before = static_cast<double>(time_us - span_zero_us_) * 1e-6 < span_.from_s;
+      place_ = before ? Place::before : Place::after;
+      return;
+    }
+    place_ = Place::inside;
+    log_first_us_ = seen.samples == 0 ? time_us : std::min(log_first_us_, time_us);
+    log_last_us_ = seen.samples == 0 ? time_us : std::max(log_last_us_, time_us);
+    ++seen.samples;
+    if (estimation_ != nullptr) estimation_->sample(sample);
+  };
+  const auto result = counts_.message(event.channel, event.data, give);
+  if (result != drivers::IntakeResult::malformed) return;
+  if (seen.malformed_counts++ > 0) return;
+  seen.first_malformed_offset = event.offset;
+  const bool is_table = event.channel == drivers::kCountsTableChannel;
+  const bool whole = drivers::is_well_formed(
+      event.data, is_table ? channel_table_t::getHash() : accel_counts_t::getHash());
+  seen.malformed =
+      event.channel + ": " +
+      (!whole     ? drivers::why_not(is_table ? "channel_table_t" : "accel_counts_t", event.data)
+       : is_table ? "names too many channels"
+                  : "no channel table before it, or an invalid resolution");
+}
+
+void ReplaySurvey::judge_raw_log(const std::string& path, const LogSeen& seen) {
+  if (seen.malformed_counts > 0) {
+    const std::string text =
+        fmt::format("{}: byte {}: {} messages are not valid in a raw log, the first: {}", path,
+                    seen.first_malformed_offset, seen.malformed_counts, seen.malformed);
+    if (seen.samples > 0)
+      add_fault(text);
+    else
+      problems_.push_back(text);
+  }
+  if (seen.samples == 0 && seen.malformed_counts == 0 && !seen.left_out)
+    problems_.push_back(fmt::format("{}: no channel is named like one of {}; it has {}", path,
+                                    config_.path, joined(counts_.unknown())));
+  else if (std::exchange(ignored_, joined(counts_.unknown())) != ignored_ && !ignored_.empty())
+    notes_.push_back(fmt::format("{}: ignored channels that {} does not have: {}", path,
+                                 config_.path, ignored_));
+  if (seen.samples > 0) extend(path, log_first_us_, log_last_us_);
+  if (counts_.rate_hz() > 0) check_rate(path, counts_.rate_hz());
 }
 
 }  // namespace framewatch::daemon

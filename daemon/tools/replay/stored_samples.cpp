@@ -39,17 +39,17 @@ std::string push_log(const Config& config, const std::string& path, drivers::Acc
   return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
 }
 
-/// What is no frame was told by the survey.
+/// Ignores lines that are not frames: the survey has reported them.
 void push_candump(const Config& config, const std::string& path,
                   const drivers::AccelIntake::Sink& sink) {
   drivers::CanIntake can(config.can, sink);
-  std::vector<drivers::Problem> told;
+  std::vector<drivers::Problem> ignored;
   drivers::read_candump(
       path,
       [&](const drivers::CanFrame& frame, std::string_view interface) {
         if (const int bus = can.bus_of(interface); bus >= 0) can.frame(bus, frame);
       },
-      told);
+      ignored);
   can.finish();
 }
 

@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Column of every degree of freedom, and the mean of the base's along its direction.
+/// Finds the sensor of every degree of freedom, and the mean of the base's along its direction.
 struct Places {
   std::vector<int> axis;  ///< -1: no sensor
   std::vector<int> base[2];
@@ -36,8 +36,8 @@ Places places(const estimator::Structure& s, const SessionMotion& m) {
   return out;
 }
 
-/// First row of the `size` rows of first..end-1 with the largest floor acceleration in their
-/// middle, all finite.
+/// Returns the first of `size` rows within first..end-1, all finite, whose middle has the largest
+/// floor acceleration.
 Index strongest(const SessionMotion& m, Index size, Index first, Index end) {
   VectorXd most = VectorXd::Zero(m.accel.rows());
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
@@ -66,7 +66,7 @@ Index strongest(const SessionMotion& m, Index size, Index first, Index end) {
   return best;
 }
 
-/// Value, velocity and displacement of one acceleration, seen through one high-pass.
+/// Acceleration, velocity and displacement of one channel behind one high-pass.
 struct Motion {
   VectorXd accel, velocity, displacement;
 };
@@ -114,7 +114,7 @@ FrameLoops frame_loops(const estimator::Structure& s, const SessionMotion& m, co
   for (int story = 1; story <= s.stories && !shared; ++story)
     for (int p = 0; p < s.panels(); ++p)
       if (!std::isfinite(theta[table.panel_stiffness(story, p)]))
-        out.reason = "a floor panel's stiffness is not known, so its force is not";
+        out.reason = "a floor panel's stiffness is not known, so its force is unknown";
   if (!out.reason.empty()) return out;
 
   const Index dofs = s.degrees_of_freedom();

@@ -9,8 +9,8 @@
 
 namespace framewatch::daemon {
 
-/// Story drift and restoring force (with damping) of one frame in one story, or of all frames of a
-/// direction where rigid floors hide what each of them takes.
+/// Story drift and restoring force (with damping) of one frame in one story. With rigid floors,
+/// which hide the share of each frame, it is that of all frames of a direction.
 struct FrameLoop {
   std::string name;  ///< parameter name, or "story 1, x"
   int story = 0;
@@ -23,14 +23,15 @@ struct FrameLoop {
 struct FrameLoops {
   std::int64_t from_us = 0, to_us = 0;  ///< sensor time of what is shown
   std::vector<FrameLoop> loops;
-  std::string reason;  ///< why there are none; empty when there are
+  std::string reason;  ///< why there are no loops; empty when there are
 };
 
-/// The strongest `seconds` of rows from..to-1 of the motion, in a 1.5 times longer stretch whose
-/// ends are tapered away; displacements are accelerations integrated twice in the frequency domain
-/// above high_pass_hz, and the forces see the same filter. A frame's force is its floors' inertia
-/// above less what the panels give its neighbors; theta (SI, table order, NaN: not known) has the
-/// panels.
+/// Computes the loops of the strongest `seconds` of rows from..to-1 of the motion.
+///
+/// The stretch is 1.5 times longer, and its ends are tapered away. Displacements are accelerations
+/// integrated twice in the frequency domain above high_pass_hz; the forces pass the same filter. A
+/// frame's force is the inertia of the floors above it, less what the panels give its neighbors.
+/// theta: SI, table order, NaN for unknown; the panels' stiffnesses are taken from it.
 FrameLoops frame_loops(const estimator::Structure& structure, const SessionMotion& motion,
                        const Eigen::VectorXd& theta, double high_pass_hz, double seconds,
                        Eigen::Index from, Eigen::Index to);

@@ -20,7 +20,7 @@ std::string out_path(const ReportArguments& a) {
                        : a.out;
 }
 
-/// Whether the configuration describes the building of the estimates.
+/// Returns true if the configuration describes the building of the estimates.
 bool fits(const Config& config, const SessionEstimates& estimates) {
   const estimator::ParameterTable table = config.pipeline.parameters();
   if (static_cast<std::size_t>(table.size()) != estimates.parameters()) return false;
@@ -46,7 +46,7 @@ std::string write_report(SessionReport r,
 
 int report(const ReportArguments& a) {
   if (!a.raw.empty() && a.config.empty())
-    return refuse("report", "--raw needs --config, which says what the channels are");
+    return refuse("report", "--raw needs --config, which describes the channels");
   if (!a.floors.empty() && a.raw.empty())
     return refuse("report", "--floors needs --config and --raw: it is computed from the samples");
   if (!a.drifts.empty() && a.raw.empty())
@@ -61,7 +61,7 @@ int report(const ReportArguments& a) {
     for (const std::string& out : {path, a.floors, a.drifts}) {
       std::error_code error;
       if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
-        return refuse("report", out + ": is input and output");
+        return refuse("report", out + ": is input and output; name another output");
     }
   }
   SessionReport r;

@@ -13,24 +13,25 @@ struct ReportArguments {
   std::string out;               ///< empty: beside the log, .html
   std::string config;            ///< needed with raw
   std::vector<std::string> raw;  ///< logs and record files, in order of time
-  RecordFileArguments record;    ///< what such record files do not say themselves
+  RecordFileArguments record;    ///< options that record files do not state themselves
   std::string title, test, operator_name, notes;
-  std::string floors;   ///< JSON of every floor's motion to write; empty: none
-  std::string drifts;   ///< JSON of drifts, damage and placard to write; empty: none
-  std::string session;  ///< session.json of `framewatch record`; empty: none
+  std::string floors;   ///< JSON file for every floor's motion; empty: no file
+  std::string drifts;   ///< JSON file for drifts, damage and placard; empty: no file
+  std::string session;  ///< session.json of `framewatch record`; may be empty
   bool quiet = false;
 };
 
 /// Evaluates a session and writes its page, which lists `files` (use, path) with their SHA-256.
-/// floors_path: also the JSON of every floor's motion, of a building of groups with motion;
-/// drifts_path: also that of drifts, damage and placard, with motion.
-/// Returns an empty string, or the reason of a failure; then there is no page.
+/// floors_path: JSON file for every floor's motion; needs a building of groups and motion.
+/// drifts_path: JSON file for drifts, damage and placard; needs motion. Returns an empty string, or
+/// the reason of a failure.
 std::string write_report(SessionReport session,
                          const std::vector<std::pair<std::string, std::string>>& files,
                          const std::string& path, const std::string& floors_path = {},
                          const std::string& drifts_path = {});
 
-/// framewatch report: one self-contained HTML page of a session. Exit code.
+/// Runs `framewatch report`: writes one self-contained HTML page of a session. Returns the exit
+/// code.
 int report(const ReportArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -21,9 +21,9 @@ using estimator::WindowValue;
 
 constexpr double kTimeStep_s = 0.1;
 constexpr int kFewestWindows = 4;
-constexpr double kTemperatureErrors = 3;    // of a slope, that are no change
-constexpr double kMaxByTemperature = 0.05;  // beyond nothing is judged
-/// A loss in one story may show in its group's value by so much less than in its stiffness.
+constexpr double kTemperatureErrors = 3;    // of a slope, attributed to temperature
+constexpr double kMaxByTemperature = 0.05;  // beyond it no stiffness is judged
+/// Factor by which a loss in one story may be larger than its group's value shows.
 constexpr double kGroupShows = 1.5;
 
 bool is_stiffness(const SessionEstimates& s, std::size_t p) {
@@ -37,7 +37,7 @@ double least_change(const SessionEstimates& s, std::size_t p) {
              : usual.least_change_g;
 }
 
-/// Windows of the session that do not overlap, with the parameter's values.
+/// Returns windows of the session that do not overlap, with the parameter's values.
 std::vector<WindowValue> separate(const SessionEstimates& s, std::size_t p) {
   std::vector<WindowValue> out;
   const std::vector<std::uint8_t> settled = settled_windows(s, p);
@@ -53,8 +53,8 @@ std::vector<WindowValue> separate(const SessionEstimates& s, std::size_t p) {
   return out;
 }
 
-/// When the mean of the windows passes from one value to the other: a window that has seen a share
-/// of the time behind the change has that share of the change.
+/// Returns the time of a change. A window whose share x lies after the change has the share x of
+/// the change; the time is the one whose windows fit best.
 std::int64_t moment(const SessionEstimates& s, const ElementChange& c, std::int64_t from_us,
                     std::int64_t to_us) {
   double best = INFINITY;
@@ -78,7 +78,7 @@ std::int64_t moment(const SessionEstimates& s, const ElementChange& c, std::int6
   return at_us;
 }
 
-/// The changes of a stretch of windows, the largest first divided.
+/// Appends the changes of a stretch of windows: divides it at the largest, then each part.
 void divide(const SessionEstimates& s, std::size_t p, const std::vector<WindowValue>& values,
             std::vector<ElementChange>& out) {
   const auto found = estimator::find_change(values, least_change(s, p));
@@ -92,7 +92,7 @@ void divide(const SessionEstimates& s, std::size_t p, const std::vector<WindowVa
   divide(s, p, {at(found->after_begin), values.end()}, out);
 }
 
-/// The record of an element, as the newest of its events has it; null: none is raised at the end.
+/// Returns the newest event of an element's change; nullptr when none is raised at the end.
 const event_t* record_of(const SessionEstimates& s, const std::string& place) {
   const event_t* last = nullptr;
   for (const event_t& e : s.events)
@@ -100,26 +100,27 @@ const event_t* record_of(const SessionEstimates& s, const std::string& place) {
   return last == nullptr || last->state == event_state::cleared ? nullptr : last;
 }
 
-/// A change has one size: where [watch] has a record of it, the record's.
+/// Replaces the changes of stiffnesses that [watch] compared by those of its events, so that a
+/// change has one size everywhere.
 void take_records(const SessionEstimates& s, std::vector<ElementChange>& out) {
   for (std::size_t p = 0; p < s.parameters(); ++p) {
     const event_t* record = record_of(s, s.table.name[p]);
-    ElementChange told{p, 0, {}, {}, 0, 0, true};
+    ElementChange announced{p, 0, {}, {}, 0, 0, true};
     if (record != nullptr)
       for (const ElementChange& c : out)
-        if (c.parameter == p && (c.ratio < 0) == (record->value < 0)) told = c;
+        if (c.parameter == p && (c.ratio < 0) == (record->value < 0)) announced = c;
     if (record != nullptr || s.compared(p))
       std::erase_if(out, [&](const ElementChange& c) { return c.parameter == p; });
     if (record == nullptr) continue;
-    told.told = true;
-    told.since_us = record->since_us;
-    told.ratio = record->value / 100;
-    told.std_error = record->std_error / 100;
-    out.push_back(told);
+    announced.announced = true;
+    announced.since_us = record->since_us;
+    announced.ratio = record->value / 100;
+    announced.std_error = record->std_error / 100;
+    out.push_back(announced);
   }
 }
 
-/// What the temperature may explain of a deviation, relative: it would not have shown.
+/// Returns the relative deviation that the temperature may explain and that would not have shown.
 double by_temperature(const SessionEstimates& s, std::size_t p) {
   if (!s.watch || p >= s.watch->per_degc.size()) return 0;
   const watch_t& w = *s.watch;
@@ -130,7 +131,7 @@ double by_temperature(const SessionEstimates& s, std::size_t p) {
   return kTemperatureErrors * slope * off;
 }
 
-/// Median of a window's standard error over its value, of the windows within two times.
+/// Returns the median relative standard error of the windows within two times.
 double usual_error(const SessionEstimates& s, std::size_t p, std::int64_t from_us,
                    std::int64_t to_us) {
   const std::vector<std::uint8_t> settled = settled_windows(s, p);
@@ -141,7 +142,7 @@ double usual_error(const SessionEstimates& s, std::size_t p, std::int64_t from_u
   return boxplot_of(std::move(errors)).median;
 }
 
-/// Rms acceleration of the floors between two times, m/s^2.
+/// Returns the rms acceleration of the floors between two times, m/s^2.
 double floor_motion_mps2(const SessionMotion& m, std::int64_t from_us, std::int64_t to_us) {
   const Eigen::Index from = m.row_at(from_us), to = m.row_at(to_us);
   double sum = 0, count = 0;
@@ -231,7 +232,7 @@ std::vector<JudgedElement> judged_elements(const SessionEstimates& s) {
     const std::vector<WindowValue> values = separate(s, p);
     if (values.size() < kFewestWindows) continue;
     const estimator::WindowMean mean = estimator::mean_of(values, 0, values.size());
-    // Of the difference between two halves.
+    // The error of the difference between two halves.
     const double errors = 2 * estimator::kChangeErrors * mean.std_error / mean.value;
     const double least = least_change(s, p), temperature = by_temperature(s, p);
     if (!(errors < 2 * least) || temperature > kMaxByTemperature) continue;
@@ -249,9 +250,8 @@ std::string why_not_judged(const SessionEstimates& s) {
     if (is_stiffness(s, p) && by_temperature(s, p) > kMaxByTemperature) ++hidden;
   return hidden == 0 ? ""
                      : fmt::format(
-                           "{} stiffnesses are not judged, because the building has another "
-                           "temperature than its baseline and what that makes of them is not "
-                           "learned yet. ",
+                           "{} stiffnesses are not judged: the building's temperature differs from "
+                           "its baseline's, and their dependence on it is not learned yet. ",
                            hidden);
 }
 

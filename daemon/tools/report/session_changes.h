@@ -16,49 +16,51 @@ namespace framewatch::daemon {
 struct ElementChange {
   std::size_t parameter = 0;
   std::int64_t since_us = 0;            ///< sensor time
-  estimator::WindowMean before, after;  ///< SI; without windows: only an event tells of it
-  double ratio = 0, std_error = 0;      ///< of what it was before; NaN: not known yet
-  bool told = false;                    ///< the numbers are those of an event: the one record
+  estimator::WindowMean before, after;  ///< SI; without windows: known from an event only
+  double ratio = 0, std_error = 0;      ///< relative to the value before; NaN: not known yet
+  bool announced = false;               ///< the numbers are those of an event of [watch]
 
   bool measured() const { return before.count > 0; }
   bool sized() const { return std_error > 0; }
 };
 
-/// A parameter of a log, as far as its words need it: name, kind and stories.
+/// Returns a parameter of a log with name, kind and stories; other fields are not set.
 estimator::Parameter parameter_of(const parameter_table_t& table, std::size_t parameter);
 
-/// " (one of stories 5 to 8 may have lost up to 8 %)" of a loss of a group; else empty.
+/// Returns " (one of stories 5 to 8 may have lost up to 8 %)" for a loss of a group of stories; ""
+/// for any other change.
 std::string of_one_story(const parameter_table_t& table, const ElementChange& change);
 
-/// Whether a change of what every stiffness has in common is raised at the end, as its event says.
+/// Returns the event of a change common to all stiffnesses that is raised at the end; nullptr
+/// without one.
 const event_t* common_change(const SessionEstimates& session);
 
-/// Changes of stiffnesses within a session, as its main windows show them seen from the end, in
-/// order of time: by 3 % (frames) or 20 % (panels) at least and six standard errors. Where [watch]
-/// compared a stiffness with a baseline, its events say what changed and by how much, against that
-/// baseline, and nothing else is claimed.
+/// Finds the changes of stiffnesses in the main windows of a session, in order of time. A change is
+/// at least 3 % (frames) or 20 % (panels) and six standard errors. For a stiffness that [watch]
+/// compared with a baseline, its events alone give the changes and their sizes.
 std::vector<ElementChange> session_changes(const SessionEstimates& session);
 
-/// Takes out of `changes` those that are recovery: a stiffness that grows back toward what it was
-/// before an earlier loss, or grows while the motion dies away. Without `motion` (null) that is
-/// seen from the windows' errors over their values, which are larger where the motion is weaker.
+/// Removes from `changes`, and returns, those that are recovery: a stiffness that grows back toward
+/// its value before an earlier loss, or grows while the motion dies away. Without `motion` (null)
+/// weaker motion is recognized by the larger relative errors of its windows.
 std::vector<ElementChange> take_recoveries(const SessionEstimates& session,
                                            const SessionMotion* motion,
                                            std::vector<ElementChange>& changes);
 
-/// A stiffness of which it can be said whether it changed.
+/// A stiffness with enough windows to say whether it changed.
 struct JudgedElement {
   std::size_t parameter = 0;
   double shows = 0;  ///< least loss of one of its stories that would have shown, relative
 };
-/// Stiffnesses with windows enough that session_changes() would have found a change of twice the
-/// least relevant one. What shows counts the windows' errors, the temperature's slope, and of
-/// groups the model's error.
+/// Returns the stiffnesses for which session_changes() would have found a change of twice the least
+/// relevant one. `shows` includes the windows' errors, the temperature's slope, and for groups the
+/// model's error.
 std::vector<JudgedElement> judged_elements(const SessionEstimates& session);
-/// Why stiffnesses are not judged though their windows would do; empty: there is no such reason.
+/// Returns why stiffnesses with enough windows are not judged; "" without such a reason.
 std::string why_not_judged(const SessionEstimates& session);
 
-/// "frame y2 of story 1", "floor panel x1y1 of floor 2"; the name itself where it is another's.
+/// Returns "frame y2 of story 1" or "floor panel x1y1 of floor 2" for a stiffness, and the
+/// parameter's name otherwise.
 std::string element_words(const parameter_table_t& table, std::size_t parameter);
 
 }  // namespace framewatch::daemon

@@ -149,7 +149,7 @@ std::optional<SessionFile> parse_session(const std::string& text, std::string& e
   try {
     const Json json = Json::parse(text);
     if (json.at("schema") == kSchema) return session_of(json);
-    error = "is no " + std::string(kSchema);
+    error = "is not of schema " + std::string(kSchema);
   } catch (const Json::exception& e) {
     error = e.what();
   }

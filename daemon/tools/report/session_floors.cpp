@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/json_values.h"
+#include "daemon/base/median.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/identify/elements/guessed_design.h"
+#include "estimator/motion/noise_meter.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"
 
@@ -18,7 +22,7 @@ using Eigen::Index;
 
 constexpr double kBegins = 0.05, kEnds = 0.95;  // of the Arias intensity
 constexpr double kLongestStrong_s = 300;
-constexpr double kLead_s = 60, kTail_s = 10;  // for the filters' and the inner floors' start
+constexpr double kLead_s = 60, kTail_s = 10;  // so that filters and inner floors settle
 
 int direction_of(const estimator::Structure& s, const estimator::SensorAxis& axis) {
   return (axis.frame >= 0 ? s.direction(axis.frame) : axis.direction) == estimator::Direction::x
@@ -48,7 +52,7 @@ void choose_parameters(const Config& config, const SessionEstimates& estimates,
   for (std::size_t p = 0; p < out.theta.size(); ++p) {
     const estimator::Parameter& parameter = table[static_cast<int>(p)];
     const auto bending = table.find(parameter.direction == estimator::Direction::x ? "krx" : "kry");
-    if (bending && !parameter.frames.empty()) {  // panels have none
+    if (bending && !parameter.frames.empty()) {  // panels do not bend
       take(parameter.kind == estimator::ParameterKind::bending_stiffness
                ? last_value(estimates, p)
                : summarise(estimates, p, all).boxplot.median,
@@ -60,7 +64,24 @@ void choose_parameters(const Config& config, const SessionEstimates& estimates,
   }
 }
 
-/// What StoryResponse follows.
+/// Passes every row of the motion to `response` and `peak`, and calls `each` after each row.
+template <typename Each>
+void replay_motion(const SessionMotion& m, estimator::StoryResponse& response,
+                   estimator::PeakResponse& peak, const Each& each) {
+  estimator::SampleSet set;
+  set.accel.resize(m.axes.size());
+  for (Index row = 0; row < m.accel.rows(); ++row) {
+    set.index = row;
+    set.time = estimator::from_microseconds(m.time_us(row));
+    for (std::size_t a = 0; a < m.axes.size(); ++a)
+      set.accel[a] = m.accel(row, static_cast<Index>(a));
+    response.push(set);
+    peak.take(response);
+    each();
+  }
+}
+
+/// Returns the parameters as an estimate that StoryResponse can follow.
 estimator::WindowEstimate as_estimate(const std::vector<double>& theta) {
   estimator::WindowEstimate out;
   out.status = estimator::WindowStatus::valid;
@@ -76,15 +97,7 @@ void find_peaks(const Config& config, const SessionMotion& m, SessionFloors& out
   out.peak = {m.axes.size(), static_cast<std::size_t>(s.degrees_of_freedom())};
   out.peak_accel_mps2.assign(static_cast<std::size_t>(s.stories) + 1,
                              {estimator::kNaN, estimator::kNaN});
-  estimator::SampleSet set;
-  set.accel.resize(m.axes.size());
-  for (Index row = 0; row < m.accel.rows(); ++row) {
-    set.index = row;
-    set.time = estimator::from_microseconds(m.time_us(row));
-    for (std::size_t a = 0; a < m.axes.size(); ++a)
-      set.accel[a] = m.accel(row, static_cast<Index>(a));
-    response.push(set);
-    out.peak.take(response);
+  replay_motion(m, response, out.peak, [&] {
     for (int floor = 0; floor <= s.stories; ++floor)
       for (int f = 0; f < s.frames(); ++f) {
         double& peak = out.peak_accel_mps2[static_cast<std::size_t>(floor)]
@@ -92,7 +105,53 @@ void find_peaks(const Config& config, const SessionMotion& m, SessionFloors& out
         const double now = std::abs(response.floor_accel_mps2(floor, f));
         if (std::isfinite(now) && !(now <= peak)) peak = now;
       }
+  });
+}
+
+/// Returns the configured noise densities, or those that the record shows in a band without motion.
+std::vector<double> session_noise(const SessionMotion& m) {
+  std::vector<double> out = noise_densities(m.axes);
+  estimator::NoiseMeter meter(static_cast<int>(m.axes.size()), m.rate_hz);
+  std::vector<double> row(m.axes.size());
+  for (Index i = 0; i < m.accel.rows(); ++i) {
+    for (std::size_t a = 0; a < row.size(); ++a) row[a] = m.accel(i, static_cast<Index>(a));
+    meter.push(row);
   }
+  for (std::size_t a = 0; a < out.size(); ++a)
+    if (const double measured = meter.density(static_cast<int>(a));
+        m.axes[a].noise_density == 0 && measured > 0)
+      out[a] = measured;
+  return out;
+}
+
+/// Returns the medians of the strong windows as an estimate that StoryResponse can follow.
+estimator::WindowEstimate strong_estimate(const SessionEstimates& e, const WindowRange& strong) {
+  estimator::WindowEstimate out(e.parameters());
+  out.status = estimator::WindowStatus::valid;
+  const WindowRange all{0, e.windows()};
+  for (std::size_t p = 0; p < e.parameters(); ++p) {
+    const ParameterSummary inside = summarise(e, p, strong);
+    const ParameterSummary& s = inside.boxplot.median > 0 ? inside : summarise(e, p, all);
+    out.value[p] = s.boxplot.median;
+    out.std_error[p] = s.std_error;
+    out.reason[p] = s.boxplot.median > 0 ? estimator::Observability::observable
+                                         : estimator::Observability::quiet;
+  }
+  std::vector<double> misfits;
+  for (std::size_t w = strong.from; w < strong.to; ++w)
+    if (std::isfinite(e.residual_ratio[w])) misfits.push_back(e.residual_ratio[w]);
+  out.residual_ratio = misfits.empty() ? estimator::kNaN : median(misfits);
+  return out;
+}
+
+/// Returns the gravest lasting loss in words; "" without one.
+std::string loss_words(const SessionEstimates& e, const std::vector<ElementChange>& changes) {
+  const auto gravest = std::min_element(
+      changes.begin(), changes.end(),
+      [](const ElementChange& a, const ElementChange& b) { return a.ratio < b.ratio; });
+  if (gravest == changes.end() || !(gravest->ratio < 0)) return "";
+  return fmt::format("{} lost {:.1f} % of stiffness", element_words(e.table, gravest->parameter),
+                     -100 * gravest->ratio);
 }
 
 }  // namespace
@@ -192,6 +251,23 @@ std::string floors_json(const SessionFloors& floors, const Config& config,
                                {"spline_error_ratio", json_value(one.spline)},
                                {"spline_error_below_5_hz_ratio", json_value(one.low_spline)}});
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+DriftReport session_drifts(const Config& config, const SessionMotion& m,
+                           const SessionEstimates& estimates,
+                           const std::vector<ElementChange>& changes) {
+  estimator::PipelineConfig pipeline = config.pipeline;
+  pipeline.axes = m.axes;
+  const auto [first, end] = strong_rows(m);
+  estimator::StoryResponse response(pipeline);
+  response.follow(
+      strong_estimate(estimates, windows_within(estimates, m.time_us(first), m.time_us(end))));
+  estimator::PeakResponse peak(m.axes.size(),
+                               static_cast<std::size_t>(pipeline.structure.degrees_of_freedom()));
+  replay_motion(m, response, peak, [] {});
+  estimator::DriftKnowledge known = response.knowledge();
+  known.noise_density = session_noise(m);
+  return drift_report(config, pipeline, peak, known, loss_words(estimates, changes));
 }
 
 }  // namespace framewatch::daemon

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kMaxValues = 1LL << 26;
 
-/// Sample sets by their place on the common grid.
+/// Collects sample sets by their place on the common grid.
 class Collector {
  public:
   explicit Collector(const estimator::PipelineConfig& config)
@@ -59,13 +59,13 @@ class Collector {
   estimator::Acquisition acquisition_;
 };
 
-/// Whether it is the base's motion or a force: what makes the building move.
+/// Returns true for axes of the base and forces: those that make the building move.
 bool drives(const estimator::SensorAxis& axis) {
   return axis.story == 0 || axis.is_force;
 }
 
-/// rms of every block of the axes that drive, or of the others, without the blocks' means; the
-/// largest of the axes.
+/// Returns for each block the largest rms, without the block's mean, of the axes that drive the
+/// building, or of the others.
 std::vector<double> block_rms(const SessionMotion& m, bool driving, Eigen::Index block) {
   std::vector<double> out(static_cast<std::size_t>(m.accel.rows() / block), 0.0);
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
@@ -81,7 +81,7 @@ std::vector<double> block_rms(const SessionMotion& m, bool driving, Eigen::Index
   return out;
 }
 
-/// Blocks in which something moves.
+/// Returns true for each block that moves.
 std::vector<bool> moving(const std::vector<double>& rms, double noise, double share) {
   std::vector<double> ordered = rms;
   std::sort(ordered.begin(), ordered.end());
@@ -165,7 +165,7 @@ std::vector<Stage> find_stages(const SessionMotion& m) {
                        : StageKind::quiet,
            m.time_us(static_cast<Eigen::Index>(b) * block),
            m.time_us(static_cast<Eigen::Index>(b + 1) * block));
-  // A zero crossing of the ground is no pause: short stages become part of the one before.
+  // A zero crossing of the ground is not a pause: short stages join the one before.
   std::vector<Stage> whole;
   whole.swap(out);
   for (const Stage& stage : whole)

@@ -12,7 +12,7 @@
 
 namespace framewatch::daemon {
 
-/// The calibrated samples of a whole session, evenly spaced.
+/// Calibrated samples of a whole session, evenly spaced.
 struct SessionMotion {
   double rate_hz = 0;
   std::int64_t first_us = 0;                ///< sensor time of row 0
@@ -21,13 +21,13 @@ struct SessionMotion {
   std::vector<std::string> notes;
 
   std::int64_t time_us(Eigen::Index row) const;
-  /// The row at or after a sensor time, at most rows().
+  /// Returns the first row at or after a sensor time, at most rows().
   Eigen::Index row_at(std::int64_t time_us) const;
 };
 
 /// Reads raw samples (logs and record files, in order of time) as the estimator would see them.
-/// Damaged parts are left out and noted. `declared`: what record files do not say themselves.
-/// Empty, with the problems, when they do not fit the configuration.
+/// Damaged parts are skipped and noted. declared: options that record files do not state
+/// themselves. Returns nullopt and adds to `problems` when they do not fit the configuration.
 std::optional<SessionMotion> read_session_motion(const Config& config,
                                                  const std::vector<std::string>& paths,
                                                  std::vector<std::string>& problems,
@@ -43,9 +43,9 @@ struct Stage {
   double seconds() const { return 1e-6 * static_cast<double>(to_us - from_us); }
 };
 
-/// The session from its first to its last sample in stages of at least a second. Something moves
-/// while the rms of half a second, without its mean, is over four times the sensors' noise and over
-/// 2 % (base) or 1 % (floors) of the strongest motion of the session.
+/// Divides the session, from its first to its last sample, into stages of at least a second. Base
+/// or floors move while the rms of half a second, without its mean, exceeds four times the sensors'
+/// noise and 2 % (base) or 1 % (floors) of the strongest motion of the session.
 std::vector<Stage> find_stages(const SessionMotion& motion);
 
 }  // namespace framewatch::daemon

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/core.h>
 
@@ -7,6 +8,8 @@
 #include "daemon/base/svg_plot.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/tools/report/session_report.h"
+#include "estimator/numeric/nan.h"
+#include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -37,8 +40,8 @@ std::string motion_plot(const SessionReport& r, bool base) {
   return plot.svg();
 }
 
-/// An axis that ends around 98 % of the values and the reference, if that is near: a few windows at
-/// the end of a free vibration must not flatten all the others.
+/// Limits the axis to 98 % of the values and, if it is near, the reference, so that a few windows
+/// at the end of a free vibration do not flatten all the others.
 SvgAxis without_spikes(SvgAxis axis, std::vector<double> values, double reference) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.empty()) return axis;
@@ -55,7 +58,7 @@ SvgAxis without_spikes(SvgAxis axis, std::vector<double> values, double referenc
   return axis;
 }
 
-/// Value and one standard error to either side, over time.
+/// Plots a parameter with one standard error to either side over time.
 std::string history(const SessionReport& r, std::size_t p, const std::vector<double>& t) {
   const auto [factor, unit] = paper_unit(r.estimates.table.kind[p]);
   const auto& value = r.estimates.value[p];
@@ -90,6 +93,169 @@ std::string quotient_plots(const TransferFunction& t) {
   return gain.svg() + coherence.svg();
 }
 
+constexpr std::size_t kMaxPerPlot = 24;  ///< parameters side by side
+
+constexpr const char* kKindName[] = {"frame stiffness", "floor-panel stiffness", "frame damping",
+                                     "floor-panel damping"};
+
+std::vector<std::size_t> of_kind(const SessionReport& r, int kind) {
+  std::vector<std::size_t> out;
+  for (std::size_t p = 0; p < r.estimates.parameters(); ++p)
+    if (r.estimates.table.kind[p] == kind) out.push_back(p);
+  return out;
+}
+
+SvgAxis names(const SessionReport& r, const std::vector<std::size_t>& shown) {
+  SvgAxis axis{""};
+  for (const std::size_t p : shown) axis.categories.push_back(r.estimates.table.name[p]);
+  return axis;
+}
+
+/// Returns the offset of member i of `count` that share a place on the axis.
+double offset(std::size_t i, std::size_t count) {
+  return 0.7 * ((static_cast<double>(i) + 0.5) / static_cast<double>(count) - 0.5);
+}
+
+/// Returns a plot's width: two plots fit side by side while there is room for their names.
+int width(std::size_t shown) {
+  return shown <= 3 ? 300 : shown <= 8 ? 485 : 980;
+}
+
+struct MeanGroup {
+  std::string name;
+  int color;
+  std::vector<double> value, error;
+};
+
+/// Plots the left part of Figure 10: means next to the references.
+std::string means(const SessionReport& r, int kind, const std::vector<std::size_t>& shown) {
+  const auto [per_unit, unit] = paper_unit(kind);
+  const double factor = per_unit;
+  std::vector<MeanGroup> groups;
+  const auto reference = [&](const char* name, int color, const std::vector<double>& values) {
+    MeanGroup group{name, color, {}, {}};
+    bool any = false;
+    for (const std::size_t p : shown) {
+      group.value.push_back(factor * values[p]);
+      any = any || std::isfinite(values[p]);
+    }
+    if (any) groups.push_back(std::move(group));
+  };
+  reference("reference-dynamic", 4, r.reference_dynamic);
+  reference(r.reference_from_drawings ? "reference-static" : "start value", 6, r.reference_static);
+  for (std::size_t s = 0; s < r.compared.size(); ++s) {
+    MeanGroup group{r.compared[s].name, static_cast<int>(s), {}, {}};
+    for (const std::size_t p : shown) {
+      const ParameterSummary one = summarise(r.estimates, p, r.compared[s].boxes);
+      group.value.push_back(factor * one.mean);
+      group.error.push_back(factor * one.std_error);
+    }
+    groups.push_back(std::move(group));
+  }
+  SvgPlot plot(std::string("means: ") + kKindName[kind], names(r, shown),
+               {std::string(kKindName[kind]) + ", " + unit, 0}, width(shown.size()), 300);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    std::vector<double> x;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      x.push_back(static_cast<double>(i + 1) + offset(g, groups.size()));
+    plot.add(SvgSeries{groups[g].name, groups[g].color, SvgMark::bars, x, groups[g].value,
+                       groups[g].error});
+  }
+  return plot.svg();
+}
+
+/// Plots the right part of Figure 10: boxplots of the windows.
+std::string boxes(const SessionReport& r, int kind, const std::vector<std::size_t>& shown) {
+  const auto [factor, unit] = paper_unit(kind);
+  SvgPlot plot(fmt::format("windows: {}", kKindName[kind]), names(r, shown),
+               {std::string(kKindName[kind]) + ", " + unit}, width(shown.size()), 300);
+  for (std::size_t s = 0; s < r.compared.size(); ++s) {
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      ParameterSummary one = summarise(r.estimates, shown[i], r.compared[s].boxes);
+      for (double* value : {&one.boxplot.q1, &one.boxplot.median, &one.boxplot.q3,
+                            &one.boxplot.whisker_low, &one.boxplot.whisker_high})
+        *value *= factor;
+      for (double& value : one.outliers) value *= factor;
+      plot.add(SvgBox{static_cast<double>(i + 1) + offset(s, r.compared.size()), one.boxplot,
+                      one.outliers, static_cast<int>(s)});
+    }
+    plot.add(SvgSeries{r.compared[s].name,
+                       static_cast<int>(s),
+                       SvgMark::line,
+                       {estimator::kNaN},
+                       {estimator::kNaN}});
+  }
+  bool first = true;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const double at = factor * r.reference_static[shown[i]];
+    if (!std::isfinite(at)) continue;
+    const double x = static_cast<double>(i + 1);
+    plot.add(SvgSeries{!first                      ? ""
+                       : r.reference_from_drawings ? "reference-static"
+                                                   : "start value",
+                       6,
+                       SvgMark::dashed,
+                       {x - 0.45, x + 0.45},
+                       {at, at}});
+    first = false;
+  }
+  return plot.svg();
+}
+
+std::string in_percent(double ratio) {
+  return std::isfinite(ratio) ? fmt::format("{:.1f}", 100 * ratio) : "-";
+}
+
+/// Plots peak accelerations or drifts over the building's height, with measured floors marked.
+std::string over_height(const SessionFloors& floors, const estimator::Structure& s,
+                        const char* title, const char* unit, bool drift) {
+  SvgPlot plot(title, {unit, 0}, {"floor", 0, s.stories + 0.5}, 485, 480);
+  for (const int along : {0, 1}) {
+    if ((along == 0 ? s.n() : s.m()) == 0) continue;
+    SvgSeries line{along == 0 ? "along x" : "along y", along, SvgMark::line, {}, {}};
+    SvgSeries dots{"", along, SvgMark::dots, {}, {}};
+    for (int floor = drift ? 1 : 0; floor <= s.stories; ++floor) {
+      const auto at = static_cast<std::size_t>(floor), d = static_cast<std::size_t>(along);
+      const double value =
+          drift ? 100 * peak_drift_ratio(floors, s, floor, along) : floors.peak_accel_mps2[at][d];
+      line.x.push_back(value);
+      line.y.push_back(drift ? floor - 0.5 : floor);
+      if (drift || !floors.measured[at][d]) continue;
+      dots.x.push_back(value);
+      dots.y.push_back(floor);
+    }
+    plot.add(std::move(line));
+    plot.add(std::move(dots));
+  }
+  return plot.svg();
+}
+
+std::string left_out_table(const SessionFloors& floors) {
+  std::vector<std::vector<std::string>> rows;
+  for (const estimator::LeftOutFloor& one : floors.left_out)
+    rows.push_back({fmt::format("floor {}, {}", one.floor, letter(one.direction)),
+                    in_percent(one.low_error), in_percent(one.error), in_percent(one.low_spline),
+                    in_percent(one.spline)});
+  return html_table({"left out", "error below 5 Hz, %", "error, %", "of a spline below 5 Hz, %",
+                     "of a spline, %"},
+                    rows);
+}
+
+std::string largest_error(const SessionFloors& floors) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const estimator::LeftOutFloor& one : floors.left_out) {
+    if (!std::isfinite(one.low_error)) continue;
+    least = std::min(least, one.low_error);
+    most = std::max(most, one.low_error);
+  }
+  if (!(most > 0)) return "";
+  return fmt::format(
+      " Predicted from the others, measured floors are off by {:.0f} to {:.0f} % below 5 Hz: "
+      "floors "
+      "without a channel are not better.",
+      100 * least, 100 * most);
+}
+
 }  // namespace
 
 std::string histories_section(const SessionReport& r) {
@@ -112,20 +278,19 @@ std::string histories_section(const SessionReport& r) {
     }
     if (plots.empty()) continue;
     out += html_figure(
-        plots,
-        fmt::format("{}, at the end of each window; pale: one standard error to either side; "
-                    "dotted: {}. A break: nothing is published. The axes leave out one in a "
-                    "hundred windows at "
-                    "either end.{}",
-                    stiffness ? "Stiffness" : "Damping",
-                    r.reference_from_drawings ? "reference-static" : "start value",
-                    left_out > 0 ? fmt::format(" {} more parameters are in the log.", left_out)
-                                 : std::string()));
+        plots, fmt::format(
+                   "{}, at the end of each window; pale: one standard error to either side; "
+                   "dotted: {}. The line breaks where nothing is published. The axes leave out one "
+                   "in a hundred windows at either end.{}",
+                   stiffness ? "Stiffness" : "Damping",
+                   r.reference_from_drawings ? "reference-static" : "start value",
+                   left_out > 0 ? fmt::format(" {} more parameters are in the log.", left_out)
+                                : std::string()));
   }
   SvgPlot residual("", {"time, s"}, {"residual / response"}, 980, 150);
   residual.add(SvgSeries{"", 6, SvgMark::thin_line, t, r.estimates.residual_ratio});
-  return out +
-         html_figure({residual.svg()}, "What the model leaves of the response, rms over rms.");
+  return out + html_figure({residual.svg()},
+                           "Part of the response that the model does not explain, rms over rms.");
 }
 
 std::string transfer_section(const SessionReport& r) {
@@ -154,16 +319,16 @@ std::string transfer_section(const SessionReport& r) {
          html_table({"direction", "measured mode, Hz", "model's mode, Hz", "likeness (MAC)",
                      "reference-dynamic / reference-static", "segments"},
                     rows) +
-         "<p>The model's lowest mode along the direction, and the measured peak whose shape is "
-         "most "
-         "like its: MAC 1 is the same shape, below 0.8 nothing is paired. Reference-dynamic "
+         "<p>The model's lowest mode along the direction is paired with the measured peak of the "
+         "most similar shape: MAC 1 is the same shape, below 0.8 there is no pair. "
+         "Reference-dynamic "
          "stiffness is reference-static stiffness times the square of the ratio of the two "
          "frequencies, for the frames of that direction.</p>\n";
 }
 
 namespace {
 
-/// The loop and the identified stiffness of one stage.
+/// Adds the loop and the identified stiffness of one stage to a plot.
 void add_loop(const SessionReport& r, const FrameLoop& loop, std::size_t stage, int color,
               SvgPlot& plot) {
   std::vector<double> d, f;
@@ -182,7 +347,7 @@ void add_loop(const SessionReport& r, const FrameLoop& loop, std::size_t stage, 
     plot.add(SvgSeries{"", color, SvgMark::dashed, {-1e3 * end, 1e3 * end}, {-k * end, k * end}});
 }
 
-/// What the loops of one stage came to, and the stage's name in the color of its loops.
+/// Returns a heading with the stage's name and a table of the largest drifts and forces.
 std::string loop_table(const SessionReport& r, const StageLoops& of) {
   std::vector<std::vector<std::string>> rows;
   for (const FrameLoop& loop : of.loops.loops) {
@@ -207,7 +372,7 @@ std::string loops_section(const SessionReport& r) {
   std::vector<const StageLoops*> shown;
   for (const StageLoops& of : r.loops) {
     if (!of.loops.reason.empty()) {
-      out += "<p>Not shown of " + html_text(r.compared[of.stage].name) + ": " +
+      out += "<p>Not shown for " + html_text(r.compared[of.stage].name) + ": " +
              html_text(of.loops.reason) + ".</p>\n";
       continue;
     }
@@ -228,13 +393,82 @@ std::string loops_section(const SessionReport& r) {
     plots.push_back(plot.svg());
   }
   return out +
-         html_figure(plots,
-                     fmt::format("The strongest motion ({}): restoring force with damping "
-                                 "over story drift, above {:g} Hz; dashed: the identified "
-                                 "stiffness (median).{}",
-                                 spans, r.config->pipeline.options.high_pass_hz,
-                                 frames.size() > kMaxLoops ? " The first frames only." : "")) +
+         html_figure(
+             plots,
+             fmt::format("The strongest motion ({}): restoring force with damping "
+                         "over story drift, above {:g} Hz; dashed: the identified "
+                         "stiffness (median).{}",
+                         spans, r.config->pipeline.options.high_pass_hz,
+                         frames.size() > kMaxLoops ? " Only the first frames are shown." : "")) +
          tables;
+}
+
+std::string figure_10_section(const SessionReport& r) {
+  std::string out = "<h2>Identified stiffness and damping</h2>\n";
+  for (int kind = 0; kind < 4; ++kind) {
+    const std::vector<std::size_t> all = of_kind(r, kind);
+    for (std::size_t from = 0; from < all.size(); from += kMaxPerPlot) {
+      const std::vector<std::size_t> shown(
+          all.begin() + static_cast<std::ptrdiff_t>(from),
+          all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), from + kMaxPerPlot)));
+      std::string caption = fmt::format(
+          "{}: on the left the means, with whiskers of one standard error of a window; on the "
+          "right "
+          "a boxplot per parameter (median, quartiles, adjacent values, outliers as +), of ",
+          kKindName[kind]);
+      for (std::size_t s = 0; s < r.compared.size(); ++s)
+        caption += fmt::format(
+            "{}{} windows of {:g} s in {}", s == 0 ? "" : " and ", r.compared[s].boxes.size(),
+            r.estimates.table.window_rows / r.estimates.table.rate_hz, r.compared[s].name);
+      out += html_figure({means(r, kind, shown), boxes(r, kind, shown)}, caption + ".");
+    }
+  }
+  return out;
+}
+
+std::string floors_section(const SessionReport& r) {
+  if (!r.floors) return "";
+  const SessionFloors& floors = *r.floors;
+  const estimator::Structure& s = r.config->pipeline.structure;
+  std::string out =
+      "<h2>Every floor</h2>\n" +
+      html_figure({over_height(floors, s, "peak acceleration", "m/s^2", false),
+                   over_height(floors, s, "peak story drift", "% of the story height", true)},
+                  fmt::format("Dots: floors with a channel. The others are computed from the "
+                              "measured floors above and below with the identified stiffnesses.{}",
+                              largest_error(floors)));
+  std::vector<std::vector<std::string>> rows;
+  const auto cells = [](double value, const char* format) {
+    return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+  };
+  for (int floor = s.stories; floor >= 0; --floor) {
+    std::vector<std::string> row{floor > 0 ? fmt::format("floor {}", floor) : "base"};
+    for (const int along : {0, 1}) {
+      if ((along == 0 ? s.n() : s.m()) == 0) continue;
+      const auto at = static_cast<std::size_t>(floor), d = static_cast<std::size_t>(along);
+      row.push_back(floors.measured[at][d] ? "measured" : "computed");
+      row.push_back(cells(floors.peak_accel_mps2[at][d], "{:.3f}"));
+      row.push_back(floor > 0 ? cells(100 * peak_drift_ratio(floors, s, floor, along), "{:.4f}")
+                              : "-");
+    }
+    rows.push_back(std::move(row));
+  }
+  std::vector<std::string> head{""};
+  for (const char* along : {"x", "y"}) {
+    if ((*along == 'x' ? s.n() : s.m()) == 0) continue;
+    for (const char* what : {"", " acceleration, m/s^2", " drift of the story below, %"})
+      head.push_back(along + std::string(what));
+  }
+  out += html_table(head, rows);
+  if (floors.left_out.empty()) return out;
+  return out + "<h3>Measured floors left out in turn</h3>\n" + left_out_table(floors) +
+         fmt::format(
+             "<p>Each floor is predicted from all others with the stiffnesses identified in the "
+             "strong motion ({:.1f} s to {:.1f} s, 5 to 95 % of the Arias intensity at the top). "
+             "Errors are rms of the error over rms of the motion. The spline goes through the "
+             "other "
+             "floors; next to a channel one story away it may do as well.</p>\n",
+             session_seconds(r, floors.from_us), session_seconds(r, floors.to_us));
 }
 
 }  // namespace framewatch::daemon

@@ -1,9 +1,18 @@
 #include "daemon/tools/report/session_report.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include <fmt/core.h>
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/utc_time.h"
+#include "daemon/monitor/estimates/estimate_table.h"
+#include "daemon/monitor/estimates/parameter_summary.h"
+#include "estimator/numeric/nan.h"
+#include "estimator/structure/group_design.h"
+#include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -27,7 +36,7 @@ std::string session_section(const SessionReport& r) {
         r.session->triggered_by.empty()
             ? r.session->asked_by.empty() ? "hand"
                                           : "a command of " + html_text(r.session->asked_by)
-            : fmt::format("{}, {:g} m/s^2 from rest, {:g} s stored from before",
+            : fmt::format("{}, {:g} m/s^2 from rest, with {:g} s before it",
                           html_text(r.session->triggered_by), r.session->request.trigger_mps2,
                           r.session->request.pre_trigger_s));
     row("lost", fmt::format("{} samples, {} of the recorder's {} messages", r.session->lost,
@@ -51,16 +60,123 @@ std::string provenance(const SessionReport& r) {
       html_text(table.version), html_text(table.config_sha256));
   if (r.config && r.config->sha256 != table.config_sha256)
     out +=
-        "<p><strong>The configuration given to this report is not the one the estimates were made "
-        "with.</strong></p>\n";
+        "<p><strong>The configuration of this report differs from the one that the estimates were "
+        "made with.</strong></p>\n";
   std::vector<std::string> notes = r.estimates.notes;
   if (r.motion) notes.insert(notes.end(), r.motion->notes.begin(), r.motion->notes.end());
   for (const std::string& note : notes) out += "<p>" + html_text(note) + "</p>\n";
   if (!r.motion)
     out +=
-        "<p>Without the raw samples there are no stages, transfer functions, drifts and forces: "
+        "<p>Stages, transfer functions, drifts and forces need the raw samples: "
         "<code>framewatch report EST --config CONFIG --raw RAW</code>.</p>\n";
   return out;
+}
+
+constexpr double kLoop_s = 10;
+constexpr std::int64_t kTimeError_us = 500'000;  ///< error of a change's time
+
+const Stage* longest(const std::vector<Stage>& stages, StageKind kind) {
+  const Stage* best = nullptr;
+  for (const Stage& stage : stages)
+    if (stage.kind == kind && (!best || stage.seconds() > best->seconds())) best = &stage;
+  return best;
+}
+
+/// Adds a stretch of the session as a stage. Its boxes are next to the end of the shaking, where
+/// forced vibration ends and free vibration begins, so that both show the same specimen.
+void add_stage(SessionReport& r, StageKind kind, const std::string& name, bool after,
+               std::int64_t from_us, std::int64_t to_us) {
+  const auto most = static_cast<std::size_t>(std::max(1, r.estimates.table.boxplot_windows));
+  const WindowRange whole = windows_within(r.estimates, from_us, to_us);
+  if (whole.size() == 0) return;
+  const std::size_t count = std::min(most, whole.size());
+  r.compared.push_back({kind, name, from_us, to_us, after, whole,
+                        kind == StageKind::free ? WindowRange{whole.from, whole.from + count}
+                                                : WindowRange{whole.to - count, whole.to}});
+}
+
+/// Adds a stretch of the session as a stage, or as two when the building changed in it.
+void add_cut(SessionReport& r, StageKind kind, const std::string& name, std::int64_t from_us,
+             std::int64_t to_us) {
+  std::int64_t first_us = INT64_MAX, last_us = INT64_MIN;
+  for (const ElementChange& c : r.changes) {
+    if (!c.measured()) continue;
+    first_us = std::min(first_us, c.since_us - kTimeError_us);
+    last_us = std::max(last_us, c.since_us + kTimeError_us);
+  }
+  if (last_us == INT64_MIN) return add_stage(r, kind, name, false, from_us, to_us);
+  add_stage(r, kind, name + ", before the change", false, from_us, std::min(to_us, first_us));
+  add_stage(r, kind, name + ", after the change", true, std::max(from_us, last_us), to_us);
+}
+
+void compare(SessionReport& r) {
+  for (const StageKind kind : {StageKind::forced, StageKind::free})
+    if (const Stage* stage = longest(r.stages, kind))
+      add_cut(r, kind, stage_word(kind), stage->from_us, stage->to_us);
+  if (r.compared.empty())
+    add_cut(r, StageKind::forced, "all of it", r.estimates.start_us.front(),
+            r.estimates.end_us.back());
+  if (r.compared.empty())
+    add_stage(r, StageKind::forced, "all of it", false, r.estimates.start_us.front(),
+              r.estimates.end_us.back());
+}
+
+bool bends(const estimator::PipelineConfig& c) {
+  return c.bending_nmprad.any();
+}
+
+/// Returns the design of the identified parameters, from the drawings; empty without drawings.
+Eigen::VectorXd drawn(const estimator::PipelineConfig& c) {
+  const estimator::ParameterTable table = c.parameters();
+  if (c.design.size() == 0 || !table.grouped()) return c.design;
+  return group_parameters(c.structure, table, {c.design, c.bending_nmprad});
+}
+
+Eigen::VectorXd as_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+void add_dynamic_references(SessionReport& r) {
+  const estimator::ParameterTable table = r.config->pipeline.parameters();
+  for (int p = 0; p < table.size(); ++p) {
+    if (table[p].kind != estimator::ParameterKind::frame_stiffness) continue;
+    for (const TransferFunction& t : r.transfer)
+      if (t.direction == table[p].direction)
+        r.reference_dynamic[static_cast<std::size_t>(p)] =
+            r.reference_static[static_cast<std::size_t>(p)] * t.stiffness_ratio();
+  }
+}
+
+std::string number(double value, int digits = 4) {
+  return std::isfinite(value) ? fmt::format("{:#.{}g}", value, digits) : "-";
+}
+
+std::string percent(double ratio, const char* format = "{:.1f}") {
+  return std::isfinite(ratio) ? fmt::format(fmt::runtime(format), 100 * ratio) : "-";
+}
+
+/// Returns the most frequent reason why a parameter had no value: "quiet".
+std::string without(const SessionReport& r, std::size_t p, WindowRange windows) {
+  std::array<std::size_t, kReasons> counts{};
+  for (std::size_t w = windows.from; w < windows.to; ++w) ++counts[r.estimates.reason[p][w]];
+  const auto worst = std::max_element(counts.begin() + 1, counts.end());
+  return *worst == 0 ? "" : reason_word(static_cast<int>(worst - counts.begin()));
+}
+
+/// Returns the model's error of an absolute value, and how the model fits: "1.2 N/m, fits".
+std::string model_error(const ModelFitTold* fit, std::size_t p, double value) {
+  static constexpr std::array kWords{"", "fits", "only changes mean something", "does not fit"};
+  if (fit == nullptr || fit->word[p] < 1 || fit->word[p] > 3) return "-";
+  const char* word = kWords[static_cast<std::size_t>(fit->word[p])];
+  return fit->word[p] == 3 ? word : number(fit->error[p] * value, 2) + ", " + word;
+}
+
+const char* polarity_word(int polarity) {
+  return polarity > 0 ? "right" : polarity < 0 ? "<strong>reversed</strong>" : "not tapped";
+}
+
+std::string of_range(const ChannelResult& r) {
+  return r.range > 0 ? fmt::format("{:.0f}", 100 * r.peak / r.range) : "";
 }
 
 }  // namespace
@@ -77,6 +193,170 @@ std::string session_report_html(const SessionReport& r) {
                               floors_section(r) + loops_section(r) + transfer_section(r) +
                               histories_section(r) + parameter_section(r) + check_section(r) +
                               health_section(r) + provenance(r));
+}
+
+void evaluate(SessionReport& r) {
+  const std::size_t count = r.estimates.parameters();
+  r.reference_static = r.estimates.table.design;
+  const Eigen::VectorXd design = r.config ? drawn(r.config->pipeline) : Eigen::VectorXd();
+  if (design.size() == static_cast<Eigen::Index>(count)) {
+    r.reference_static.assign(design.begin(), design.end());
+    r.reference_from_drawings = true;
+  }
+  r.reference_static.resize(count, estimator::kNaN);
+  for (double& value : r.reference_static)
+    if (!(value > 0)) value = estimator::kNaN;
+  r.reference_dynamic.assign(count, estimator::kNaN);
+  r.changes = session_changes(r.estimates);
+  r.recoveries = take_recoveries(r.estimates, r.motion ? &*r.motion : nullptr, r.changes);
+  r.judged = judged_elements(r.estimates);
+  if (r.motion) r.stages = find_stages(*r.motion);
+  compare(r);
+  if (!r.motion || !r.config) return;
+
+  const SessionMotion& m = *r.motion;
+  const estimator::Structure& structure = r.config->pipeline.structure;
+  const bool grouped = r.config->pipeline.parameters().grouped();
+  // The model of transfer functions does not bend.
+  const Eigen::VectorXd reference =
+      bends(r.config->pipeline) ? Eigen::VectorXd() : r.config->pipeline.design;
+  for (std::size_t i = 0; i < r.compared.size(); ++i) {
+    const ReportStage& stage = r.compared[i];
+    if (stage.kind != StageKind::forced) continue;
+    const Eigen::Index from = m.row_at(stage.from_us), to = m.row_at(stage.to_us);
+    auto& transfer = stage.after ? r.transfer_after : r.transfer;
+    if (transfer.empty()) transfer = transfer_functions(structure, m, from, to, reference);
+    if (grouped) continue;
+    std::vector<double> identified;
+    for (std::size_t p = 0; p < count; ++p)
+      identified.push_back(summarise(r.estimates, p, stage.whole).boxplot.median);
+    r.loops.push_back({i, frame_loops(structure, m, as_vector(identified),
+                                      r.config->pipeline.options.high_pass_hz, kLoop_s, from, to)});
+  }
+  add_dynamic_references(r);
+  r.drifts = session_drifts(*r.config, m, r.estimates, r.changes);
+  if (grouped) r.floors = session_floors(*r.config, m, r.estimates);
+}
+
+double session_seconds(const SessionReport& r, std::int64_t time_us) {
+  const std::int64_t origin = r.motion ? r.motion->first_us : r.estimates.start_us.front();
+  return 1e-6 * static_cast<double>(time_us - origin);
+}
+
+bool is_stiffness_kind(int kind) {
+  const auto k = static_cast<estimator::ParameterKind>(kind);
+  return k == estimator::ParameterKind::frame_stiffness ||
+         k == estimator::ParameterKind::panel_stiffness ||
+         k == estimator::ParameterKind::bending_stiffness;
+}
+
+std::pair<double, std::string> paper_unit(int kind) {
+  constexpr const char* kUnits[] = {"kN/m", "kN/(rad*m)", "N*s/m", "N*s/(rad*m)", "kN*m/rad"};
+  return {is_stiffness_kind(kind) ? 1e-3 : 1.0, kUnits[std::clamp(kind, 0, 4)]};
+}
+
+std::string parameter_section(const SessionReport& r) {
+  std::string out =
+      "<h2>Table of parameters</h2>\n<p>Over every window that lies wholly in the stage. The "
+      "standard error is that of one window. Neighboring windows share most of their samples, so "
+      "the mean of many windows is not much better. The standard error applies to changes; for "
+      "absolute values the larger of it and the model's error applies, which is the same in every "
+      "window.</p>\n";
+  for (const ReportStage& stage : r.compared) {
+    std::vector<std::vector<std::string>> rows;
+    const ModelFitTold* fit = model_fit_at_end(r.estimates, stage.whole);
+    for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
+      const auto [factor, unit] = paper_unit(r.estimates.table.kind[p]);
+      const ParameterSummary one = summarise(r.estimates, p, stage.whole);
+      std::vector<std::string> row{html_text(r.estimates.table.name[p]), unit};
+      for (const double value : {r.reference_static[p], r.reference_dynamic[p], one.mean})
+        row.push_back(number(factor * value));
+      row.push_back(number(factor * one.std_error, 2));
+      row.push_back(model_error(fit, p, factor * one.mean));
+      for (const double value : {one.boxplot.q1, one.boxplot.median, one.boxplot.q3})
+        row.push_back(number(factor * value));
+      row.push_back(percent(one.observable_ratio));
+      row.push_back(percent(one.boxplot.median / r.reference_static[p] - 1, "{:+.1f}"));
+      row.push_back(without(r, p, stage.whole));
+      rows.push_back(std::move(row));
+    }
+    out += "<h3>" + html_text(stage.name) + "</h3>\n" +
+           html_table(
+               {"parameter", "unit", r.reference_from_drawings ? "reference-static" : "start value",
+                "reference-dynamic", "mean", "standard error", "model's error", "q1", "median",
+                "q3", "windows with value, %", "median to reference, %", "without, mostly"},
+               rows);
+  }
+  return out;
+}
+
+std::string stages_section(const SessionReport& r) {
+  if (r.stages.empty()) return "";
+  std::vector<std::vector<std::string>> rows;
+  for (const Stage& s : r.stages) {
+    const WindowRange w = windows_within(r.estimates, s.from_us, s.to_us);
+    rows.push_back({stage_word(s.kind), fmt::format("{:.1f}", session_seconds(r, s.from_us)),
+                    fmt::format("{:.1f}", session_seconds(r, s.to_us)),
+                    fmt::format("{:.1f}", s.seconds()), fmt::format("{}", w.size())});
+  }
+  return "<h3>Stages</h3>\n" +
+         html_table({"stage", "from, s", "to, s", "length, s", "whole windows"}, rows) +
+         "<p>Forced: the base moves. Free: the base rests and the building still moves.</p>\n";
+}
+
+std::string health_section(const SessionReport& r) {
+  std::string out = "<h2>Health of the measurement</h2>\n";
+  if (r.estimates.status) {
+    const status_t& s = *r.estimates.status;
+    out += fmt::format(
+        "<p>{} windows published, {} instants used, {} interruptions, {} messages refused, {} lost "
+        "to a full queue (at most {} waited).</p>\n",
+        s.windows, s.sample_sets, s.gaps, s.rejected_messages, s.queue_dropped, s.queue_high_water);
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t i = 0; i < s.name.size(); ++i)
+      rows.push_back({html_text(s.name[i]), fmt::format("{}", s.received[i]),
+                      fmt::format("{}", s.lost[i]), fmt::format("{}", s.late[i]),
+                      fmt::format("{}", s.repaired[i]), fmt::format("{}", s.rejected[i]),
+                      fmt::format("{}", s.stuck[i]), fmt::format("{}", s.clipped[i]),
+                      number(1e6 * s.noise_mps2_per_rthz[i], 3)});
+    out += html_table({"channel", "received", "lost", "late", "repaired", "rejected", "stuck",
+                       "clipped", "noise, um/s^2/sqrt(Hz)"},
+                      rows);
+  }
+  return out;
+}
+
+std::string check_section(const SessionReport& r) {
+  if (!r.session || r.session->run.empty()) return "";
+  std::vector<std::vector<std::string>> rows;
+  const std::vector<ChannelResult>& before = r.session->check;
+  for (std::size_t i = 0; i < r.session->run.size(); ++i) {
+    const ChannelResult& run = r.session->run[i];
+    std::vector<std::string> row{html_text(run.name)};
+    if (i < before.size()) {
+      const ChannelResult& c = before[i];
+      row.push_back(std::isfinite(c.noise_density) ? fmt::format("{:.3g}", 1e6 * c.noise_density)
+                                                   : "");
+      row.push_back(fmt::format("{:.2g}", c.rms));
+      row.push_back(fmt::format("{:+.3f}", c.offset));
+    } else {
+      row.resize(4);
+    }
+    row.push_back(fmt::format("{:.3g}", run.peak));
+    row.push_back(of_range(run));
+    row.push_back(fmt::format("{}", run.saturated));
+    row.push_back(polarity_word(run.polarity));
+    std::string problem = i < before.size() ? before[i].problem : "";
+    if (run.problem != problem) problem += (problem.empty() ? "" : "; then ") + run.problem;
+    row.push_back(html_text(problem));
+    rows.push_back(std::move(row));
+  }
+  return "<h2>Channels</h2>\n" +
+         html_table({"channel", "noise before, um/s^2/sqrt(Hz)", "rms before, m/s^2",
+                     "offset before, m/s^2", "peak in the test, m/s^2", "of its range, %",
+                     "saturated", "polarity (tap test)", ""},
+                    rows) +
+         (before.empty() ? "<p>The channels were not checked before the test.</p>\n" : "");
 }
 
 }  // namespace framewatch::daemon

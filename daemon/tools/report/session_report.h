@@ -9,7 +9,6 @@
 #include "daemon/monitor/estimates/session_estimates.h"
 #include "daemon/tools/report/frame_loops.h"
 #include "daemon/tools/report/session_changes.h"
-#include "daemon/tools/report/session_drifts.h"
 #include "daemon/tools/report/session_file.h"
 #include "daemon/tools/report/session_floors.h"
 #include "daemon/tools/report/session_motion.h"
@@ -17,15 +16,15 @@
 
 namespace framewatch::daemon {
 
-/// A stage of the session that the report compares with another: forced beside free vibration, each
-/// of them before and after a change of the building, never across one.
+/// A stage of the session that the report compares with others: forced or free vibration, before or
+/// after a change of the building, never across one.
 struct ReportStage {
   StageKind kind;
   std::string name;  ///< "forced vibration, after the change"; "all of it" without raw samples
   std::int64_t from_us, to_us;  ///< sensor time
-  bool after = false;           ///< a change
+  bool after = false;           ///< lies after a change
   WindowRange whole;            ///< every window that lies wholly in the stage
-  WindowRange boxes;  ///< the boxplot_windows of them next to the stage's end (free: beginning)
+  WindowRange boxes;            ///< the last boxplot_windows of them (free vibration: the first)
 };
 
 /// Drift and force in the strongest motion of a stage.
@@ -38,43 +37,45 @@ struct ReportFile {
   std::string use, path, sha256;
 };
 
-/// Everything a session's report shows. The same input makes the same bytes.
+/// Everything a session's report shows. The same input gives the same bytes.
+///
+/// Fill in the input (texts, estimates, session, config, motion), then call evaluate().
 struct SessionReport {
-  std::string title, test, operator_name, notes;  ///< as the person said; may be empty
+  std::string title, test, operator_name, notes;  ///< by the operator; may be empty
   SessionEstimates estimates;
   std::optional<SessionFile> session;  ///< of `framewatch record`
   std::optional<Config> config;
   std::optional<SessionMotion> motion;
   std::vector<Stage> stages;                       ///< empty without motion
-  std::vector<ElementChange> changes, recoveries;  ///< a recovery is no change
-  std::vector<JudgedElement> judged;  ///< stiffnesses in which a change would have been found
+  std::vector<ElementChange> changes, recoveries;  ///< recoveries are not among the changes
+  std::vector<JudgedElement> judged;  ///< stiffnesses in which a change would have shown
   std::vector<ReportStage> compared;  ///< at least one
-  /// Table order, SI, NaN: none. reference_static: the design of the configuration, or what the
-  /// estimator began with; reference_dynamic: of frames, by the ratio of natural frequencies.
+  /// Table order, SI, NaN: unknown. reference_static: the design of the configuration, or the
+  /// estimator's start values. reference_dynamic: of frames, by the ratio of natural frequencies.
   std::vector<double> reference_static, reference_dynamic;
   bool reference_from_drawings = false;
   std::vector<TransferFunction> transfer;        ///< of the longest forced stage before a change
-  std::vector<TransferFunction> transfer_after;  ///< and after it; empty without one
+  std::vector<TransferFunction> transfer_after;  ///< of the one after it; empty without a change
   std::vector<StageLoops> loops;
   std::optional<DriftReport> drifts;    ///< with motion
-  std::optional<SessionFloors> floors;  ///< of a building of groups, with motion
+  std::optional<SessionFloors> floors;  ///< with motion, for a building of groups
   std::vector<ReportFile> files;
 };
 
-/// Computes every field that follows from estimates, config and motion.
+/// Computes the fields that follow from estimates, config and motion.
 void evaluate(SessionReport& report);
 
-/// The whole page.
+/// Returns the whole page.
 std::string session_report_html(const SessionReport& report);
 
-/// What a building's owner wants to know, in one sentence, as text.
+/// Returns one sentence for the building's owner: whether the building changed, and where.
 std::string verdict_sentence(const SessionReport& report);
 
-/// Whether what was recorded asks for bending of the frames, which the configuration leaves out, in
-/// buildings so tall that they bend; empty where there is nothing to say.
+/// Says whether a tall building's record needs bending of the frames that the configuration leaves
+/// out. Returns "" when there is nothing to say.
 std::string bending_sentence(const SessionReport& report);
 
-// The sections below are HTML, empty when there is nothing to show.
+// Each section below is HTML, "" when it has nothing to show.
 std::string verdict_section(const SessionReport& report);
 std::string events_section(const SessionReport& report);
 std::string figure_10_section(const SessionReport& report);
@@ -88,11 +89,12 @@ std::string floors_section(const SessionReport& report);
 std::string health_section(const SessionReport& report);
 std::string check_section(const SessionReport& report);
 
-/// Seconds since the session's first window or sample.
+/// Returns the seconds since the session's first window or sample.
 double session_seconds(const SessionReport& report, std::int64_t time_us);
-/// Of a frame, of a panel, or against bending; `kind` of a parameter_table_t.
+/// Returns true for stiffnesses of frames, of panels and against bending. kind: of a
+/// parameter_table_t.
 bool is_stiffness_kind(int kind);
-/// Factor and unit in which a kind of parameter is printed: 1e-3, "kN/m".
+/// Returns the factor and the unit in which a kind of parameter is printed: 1e-3, "kN/m".
 std::pair<double, std::string> paper_unit(int kind);
 
 }  // namespace framewatch::daemon

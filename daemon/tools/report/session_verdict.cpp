@@ -35,17 +35,17 @@ std::string since(const SessionReport& r, std::int64_t time_us) {
   return fmt::format("since {:.1f} s after the start{}", s, dated ? " (" + clock + ")" : "");
 }
 
-/// In percent, rounded up to a tenth: never "+-0.0".
+/// Returns the error in percent, rounded up to a tenth so that it is never "+-0.0".
 double error_percent(const ElementChange& c) {
   return std::max(0.1, std::ceil(1000 * c.std_error) / 10);
 }
 
-/// "frame y2 of story 1 has lost 15.0 % (+-0.4 %) of its stiffness".
+/// Returns "frame y2 of story 1 has lost 15.0 % (+-0.4 %) of its stiffness".
 std::string what(const SessionReport& r, const ElementChange& c) {
   const std::string element = element_words(r.estimates.table, c.parameter);
   const bool several = element.rfind("stories", 0) == 0;
   if (!c.sized())
-    return element + (several ? " are" : " is") + " changing, how much is not known yet";
+    return element + (several ? " are" : " is") + " changing, by an amount not known yet";
   const std::string size =
       fmt::format("{:.1f} % (+-{:.1f} %)", 100 * std::abs(c.ratio), error_percent(c));
   return element + (several ? " have " : " has ") +
@@ -66,8 +66,8 @@ std::size_t stiffnesses(const SessionReport& r) {
                                                 r.estimates.table.kind.end(), is_stiffness_kind));
 }
 
-/// What is said of the elements that have not changed.
-std::string the_others(const SessionReport& r) {
+/// Says how many elements have not changed, and how many could not be judged.
+std::string others_sentence(const SessionReport& r) {
   std::size_t same = 0;
   std::set<std::size_t> changed, seen;
   for (const JudgedElement& j : r.judged) {
@@ -85,13 +85,12 @@ std::string the_others(const SessionReport& r) {
                        same == 1 ? "" : "s", same == 1 ? "has" : "have");
   if (unseen > 0)
     out += fmt::format(
-        "Of {} element{} nothing can be said: {} did not move enough, or not for "
-        "long enough. ",
+        "{} element{} could not be judged: {} did not move enough, or not for long enough. ",
         unseen, unseen == 1 ? "" : "s", unseen == 1 ? "it" : "they");
   return out;
 }
 
-/// Whether the sensors could be believed.
+/// Says whether the sensors worked.
 std::string sensors_sentence(const SessionReport& r) {
   if (!r.estimates.status) return "";
   const status_t& s = *r.estimates.status;
@@ -108,7 +107,7 @@ std::string sensors_sentence(const SessionReport& r) {
                      : "Not every sensor worked: " + bad + ".";
 }
 
-/// The change of every element in one chart, with its error.
+/// Draws the change of every element with its error.
 std::string change_chart(const SessionReport& r) {
   SvgAxis names{""};
   SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
@@ -150,7 +149,8 @@ std::string change_chart(const SessionReport& r) {
                      "Stiffness after the change against before it, with its standard error.");
 }
 
-/// Frames soften while they move strongly: what grows back is no change of the building.
+/// Lists the recoveries. Frames soften while they move strongly; recovering is not a change of the
+/// building.
 std::string recovery_sentence(const SessionReport& r) {
   const std::vector<ElementChange> recoveries = largest_first(r.recoveries);
   std::string out = "While the motion died away ";
@@ -162,11 +162,11 @@ std::string recovery_sentence(const SessionReport& r) {
   if (recoveries.size() > kMaxNamed)
     out += fmt::format(", and {} more", recoveries.size() - kMaxNamed);
   return out +
-         ": frames soften while they move strongly and recover, which is no change of the "
+         ": frames soften while they move strongly and recover, which is not a change of the "
          "building.";
 }
 
-/// The stiffness of a changed element over time, its means as lines.
+/// Draws the stiffness of a changed element over time, with its means as lines.
 std::string change_history(const SessionReport& r, const ElementChange& c) {
   const auto [factor, unit] = paper_unit(r.estimates.table.kind[c.parameter]);
   std::vector<double> t, v, before, after;
@@ -207,16 +207,17 @@ std::string change_table(const SessionReport& r) {
          fmt::format("{:.1f}", session_seconds(r, c.since_us))});
   }
   if (rows.empty()) return "";
-  const bool told = std::any_of(r.changes.begin(), r.changes.end(),
-                                [](const ElementChange& c) { return c.told; });
+  const bool announced = std::any_of(r.changes.begin(), r.changes.end(),
+                                     [](const ElementChange& c) { return c.announced; });
   return html_table({"element", "parameter", "unit", "before", "after", "change, %", "since, s"},
                     rows) +
-         (told ? "<p>The change is the announced one, against the baseline and at like amplitude; "
-                 "before and after are means of this session's windows.</p>\n"
-               : "");
+         (announced
+              ? "<p>The change is the announced one, against the baseline and at equal amplitude; "
+                "before and after are means of this session's windows.</p>\n"
+              : "");
 }
 
-/// The least loss of one story of a frame that would have shown in every frame that is judged.
+/// Returns the least loss of one story of a frame that would have shown in every judged frame.
 double shows(const SessionReport& r) {
   double most = 0;
   for (const JudgedElement& j : r.judged)
@@ -226,7 +227,8 @@ double shows(const SessionReport& r) {
   return most > 0 ? most : estimator::WatchOptions{}.least_change_k;
 }
 
-/// An alarm that is raised at the end and is no change of a stiffness.
+/// Returns an alarm, other than a change of a stiffness, that is raised at the end; nullptr without
+/// one.
 const event_t* open_alarm(const SessionReport& r) {
   std::map<std::int64_t, const event_t*> last;
   for (const event_t& e : r.estimates.events) last[e.id] = &e;
@@ -237,13 +239,13 @@ const event_t* open_alarm(const SessionReport& r) {
   return nullptr;
 }
 
-/// Why there may be no events though something changed.
-std::string nothing_compared(const SessionReport& r) {
+/// Says why [watch] could not announce a change during the measurement; "" when it could.
+std::string why_no_watch(const SessionReport& r) {
   if (!r.estimates.watch)
-    return "[watch] was not configured: nothing was compared while it was measured.";
+    return "No change was announced during the measurement, because [watch] is not configured.";
   for (std::size_t p = 0; p < r.estimates.parameters(); ++p)
     if (r.estimates.compared(p)) return "";
-  return "[watch] had no baseline yet: nothing was compared while it was measured.";
+  return "No change was announced during the measurement, because [watch] had no baseline yet.";
 }
 
 }  // namespace
@@ -255,11 +257,10 @@ std::string verdict_sentence(const SessionReport& r) {
   if (const event_t* open = open_alarm(r); changes.empty() && open != nullptr)
     return fmt::format("An alarm is open at the end: {}.", open->message);
   if (changes.empty() && r.judged.empty() && !r.recoveries.empty())
-    return "Whether the building has changed cannot be said: after its strong motion there was "
-           "only "
-           "weaker motion, in which frames are stiffer.";
+    return "It is unknown whether the building has changed: after its strong motion there was "
+           "only weaker motion, in which frames are stiffer.";
   if (changes.empty() && r.judged.empty())
-    return "Whether the building has changed cannot be said: it did not move enough, or not for "
+    return "It is unknown whether the building has changed: it did not move enough, or not for "
            "long enough.";
   if (changes.empty())
     return fmt::format(
@@ -295,8 +296,8 @@ std::string bending_sentence(const SessionReport& r) {
   std::string out;
   if (!does_not.empty())
     out = fmt::format(
-        "Along {} the model does not fit. Frames this tall bend as a whole: give kr{}_nmprad in "
-        "[structure.design] and look at this record again.",
+        "Along {} the model does not fit. Frames this tall bend as a whole: set kr{}_nmprad in "
+        "[structure.design] and evaluate this record again.",
         fmt::join(does_not, " and "), fmt::join(does_not, "_nmprad and kr"));
   if (!fits.empty())
     out +=
@@ -310,9 +311,9 @@ std::string verdict_section(const SessionReport& r) {
   if (!r.recoveries.empty()) out += "<p>" + html_text(recovery_sentence(r)) + "</p>\n";
   if (const std::string bending = bending_sentence(r); !bending.empty())
     out += "<p>" + html_text(bending) + "</p>\n";
-  if (const std::string why = nothing_compared(r); !why.empty() && r.estimates.watch)
+  if (const std::string why = why_no_watch(r); !why.empty() && r.estimates.watch)
     out += "<p>" + html_text(why) + "</p>\n";
-  const std::string rest = the_others(r) + sensors_sentence(r);
+  const std::string rest = others_sentence(r) + sensors_sentence(r);
   if (!rest.empty()) out += "<p>" + html_text(rest) + "</p>\n";
   out += change_chart(r);
   const std::vector<ElementChange> changes = largest_first(r.changes);
@@ -330,11 +331,14 @@ std::string events_section(const SessionReport& r) {
                     html_text(e.message)});
   }
   if (rows.empty()) {
-    const std::string why = nothing_compared(r);
-    return "<h2>Events</h2>\n<p>" +
-           (why.empty() ? "None was announced while it was measured." : html_text(why)) + "</p>\n";
+    std::string why = why_no_watch(r);
+    if (why.empty())
+      why = "No event was announced during the measurement.";
+    else if (!r.changes.empty())
+      why += " This report found the changes above afterward, from all windows of the session.";
+    return "<h2>Events</h2>\n<p>" + html_text(why) + "</p>\n";
   }
-  return "<h2>Events</h2>\n<p>As they were announced while it was measured.</p>\n" +
+  return "<h2>Events</h2>\n<p>As they were announced during the measurement.</p>\n" +
          html_table({"time, s", "state", "severity", "place", "what"}, rows) +
          (r.estimates.events.size() > kMaxEvents
               ? fmt::format("<p>{} more.</p>\n", r.estimates.events.size() - kMaxEvents)

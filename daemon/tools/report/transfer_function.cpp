@@ -16,12 +16,13 @@ namespace {
 using Eigen::Index;
 using Complex = std::complex<double>;
 constexpr double kSegment_s = 20, kShortest_s = 4, kLowest_hz = 0.3;
-// Of peaks: share of the largest's power that the model's lowest mode has, and a measured one that
-// is looked at; how far from the model's that may lie; likeness of shapes that are of one mode.
+// Least power of a peak, as a share of the largest's: kFundamental for the model's lowest mode,
+// kMinor for a measured one. kNear: largest ratio of their frequencies. kAlike: least MAC of a
+// pair.
 constexpr double kFundamental = 0.1, kMinor = 0.02, kNear = 1.6, kAlike = 0.8;
 constexpr Index kMaxUnknowns = 100;
 
-/// Mean of the axes that `wanted` picks.
+/// Returns the mean of the axes that `wanted` picks; empty without one.
 template <typename Wanted>
 Eigen::VectorXd mean_of(const SessionMotion& m, Index from, Index to, Wanted wanted) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(to - from);
@@ -35,8 +36,8 @@ Eigen::VectorXd mean_of(const SessionMotion& m, Index from, Index to, Wanted wan
   return count > 0 ? sum : Eigen::VectorXd();
 }
 
-/// The model's response, absolute acceleration at the top floor, to a unit acceleration of the base
-/// along x and along y, at one frequency after the other.
+/// Computes the model's response to a unit acceleration of the base along x and along y, at one
+/// frequency per call.
 class ModelResponse {
  public:
   ModelResponse(const estimator::Structure& s, const Eigen::VectorXd& theta,
@@ -62,7 +63,7 @@ class ModelResponse {
     floors_ = t;
   }
 
-  /// Of all degrees of freedom, relative to the base.
+  /// Returns the acceleration of all degrees of freedom relative to the base, for base x and y.
   Eigen::MatrixXcd floors(double w) const {
     const Eigen::MatrixXcd dynamic = stiffness_.cast<Complex>() - w * w * mass_.cast<Complex>() +
                                      Complex(0, w) * damping_.cast<Complex>();
@@ -72,7 +73,7 @@ class ModelResponse {
       z.col(b) = solver.solve(Eigen::VectorXcd(load_.col(b).cast<Complex>()));
     return w * w * (floors_.cast<Complex>() * z);
   }
-  /// Of the top floor's mean, absolute, from that.
+  /// Returns the absolute mean acceleration of the top floor, from the result of floors().
   Eigen::Vector2cd top(const Eigen::MatrixXcd& floors) const {
     return direct_.cast<Complex>() + (output_.transpose().cast<Complex>() * floors).transpose();
   }
@@ -83,7 +84,7 @@ class ModelResponse {
   Eigen::Vector2d direct_;
 };
 
-/// Frequency of the largest of three values, between the bins by a parabola.
+/// Returns the frequency of the parabola's peak through three bins, the largest in the middle.
 double between_bins(double f, double step_hz, double below, double at, double higher) {
   const double curvature = below - 2 * at + higher;
   return f + (curvature < 0 ? 0.5 * (below - higher) / curvature : 0) * step_hz;
@@ -91,7 +92,7 @@ double between_bins(double f, double step_hz, double below, double at, double hi
 
 struct Signals {
   Eigen::VectorXd top, base_x, base_y;
-  /// Relative to the base, samples x degrees of freedom; no columns where a sensor lacks.
+  /// Relative to the base, samples x degrees of freedom; no columns if a sensor is missing.
   Eigen::MatrixXd floors;
   estimator::Direction direction;
   const Eigen::VectorXd& base() const {
@@ -113,8 +114,8 @@ Eigen::VectorXcd tapered(const Eigen::VectorXd& signal, Index from, const Eigen:
   return estimator::forward_fourier(part.cwiseProduct(taper));
 }
 
-/// What the model makes of the base along x and along y: the top floor's mean, bins x 2, and all
-/// degrees of freedom, bins x degrees of freedom. Without rows: there is no model.
+/// The model's response to the base along x and along y: the top floor's mean, bins x 2, and all
+/// degrees of freedom, bins x degrees of freedom. Has no rows without a model.
 struct ModelSpectra {
   Eigen::MatrixXcd top, floors[2];
 };
@@ -167,14 +168,15 @@ Spectra spectra(const Signals& s, const Eigen::VectorXd& taper, const ModelSpect
   return out;
 }
 
-/// A peak of the motion along one direction, and its shape there.
+/// A peak of the motion along one direction, with its shape.
 struct ShapePeak {
   double hz, power;
   Eigen::VectorXcd shape;
 };
 
-/// Those of at least `share` of the largest one's power, ascending, at low_hz to high_hz. floors:
-/// cross spectra of the degrees of freedom with the base, whose own spectrum is `base`.
+/// Returns the peaks between low_hz and high_hz with at least `share` of the largest one's power,
+/// in ascending order. floors: cross spectra of the degrees of freedom with the base, whose
+/// spectrum is `base`.
 std::vector<ShapePeak> shape_peaks(const Eigen::MatrixXcd& floors, const Eigen::VectorXd& base,
                                    const Eigen::VectorXd& mass, double step_hz, double low_hz,
                                    double high_hz, double share) {
@@ -197,13 +199,13 @@ std::vector<ShapePeak> shape_peaks(const Eigen::MatrixXcd& floors, const Eigen::
   return out;
 }
 
-/// Modal assurance criterion, weighted by mass.
+/// Returns the modal assurance criterion of two shapes, weighted by mass.
 double mac_of(const Eigen::VectorXcd& a, const Eigen::VectorXcd& b, const Eigen::VectorXd& mass) {
   const Complex common = a.dot(Eigen::VectorXcd(b.cwiseProduct(mass.cast<Complex>())));
   return std::norm(common) / (a.cwiseAbs2().dot(mass) * b.cwiseAbs2().dot(mass));
 }
 
-/// Puts the measured peak that has the shape of the model's lowest one beside it.
+/// Pairs the model's lowest peak with the measured peak of the most similar shape.
 void pair_modes(const estimator::Structure& structure, const Spectra& s, double step_hz,
                 double highest_hz, TransferFunction& out) {
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(structure.degrees_of_freedom());

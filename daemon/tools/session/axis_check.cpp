@@ -10,7 +10,12 @@
 namespace framewatch::daemon {
 namespace {
 
-// Beyond these a person should look before the table moves.
+constexpr double kSettled_s = 1, kMemory_s = 5;
+
+constexpr double kPulse_s = 0.25, kRest_s = 0.3, kRinging_s = 1;
+constexpr double kOverRinging = 2.5, kClear = 0.8, kFirst = 0.5;
+
+// Limits beyond which a user should check the channel before the table moves.
 constexpr double kMaxWhite = 2;        // rms over that of its noise; beyond it the building moves
 constexpr double kMaxNoise = 3;        // times the configured density
 constexpr double kMaxOffset_mps2 = 1;  // 6 degrees of tilt
@@ -18,6 +23,70 @@ constexpr double kMaxMissing_ratio = 0.01;
 constexpr double kNearRange = 0.9;
 
 }  // namespace
+
+RestLevel::RestLevel(std::size_t axes, double rate_hz)
+    : settled_(std::lround(kSettled_s * rate_hz)),
+      memory_(std::lround(kMemory_s * rate_hz)),
+      axes_(axes),
+      distance_(axes) {}
+
+const std::vector<double>& RestLevel::push(const estimator::SampleSet& set) {
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    Axis& axis = axes_[a];
+    const double value = set.accel[a];
+    distance_[a] = std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(value)) continue;
+    if (axis.seen >= settled_) distance_[a] = value - axis.mean;
+    axis.seen = std::min(axis.seen + 1, memory_);
+    axis.mean += (value - axis.mean) / static_cast<double>(axis.seen);
+  }
+  return distance_;
+}
+
+TapTest::TapTest(std::size_t axes, double rate_hz)
+    : pulse_(std::max(2L, std::lround(kPulse_s * rate_hz))),
+      rest_(std::lround(kRest_s * rate_hz)),
+      forget_(std::exp(-1 / (kRinging_s * rate_hz))),
+      ringing_(axes, 0.0) {}
+
+std::optional<TapTest::Tap> TapTest::push(const std::vector<double>& distance,
+                                          const std::vector<double>& threshold) {
+  const std::size_t axes = ringing_.size();
+  const auto beyond = [&](std::size_t a) {
+    return std::abs(distance[a]) > std::max(threshold[a], kOverRinging * ringing_[a]);
+  };
+  if (since_ < 0)
+    for (std::size_t a = 0; a < axes; ++a)
+      if (beyond(a)) since_ = 0;
+  std::optional<Tap> found;
+  if (since_ >= 0 && since_ < pulse_) {
+    pulse_rows_.push_back(distance);
+    if (++since_ < pulse_) return std::nullopt;
+    found = judge();
+    pulse_rows_.clear();
+  } else if (since_ >= 0 && ++since_ >= pulse_ + rest_) {
+    since_ = -1;
+  }
+  for (std::size_t a = 0; a < axes; ++a)
+    if (std::isfinite(distance[a]))
+      ringing_[a] = std::max(std::abs(distance[a]), forget_ * ringing_[a]);
+  return found;
+}
+
+TapTest::Tap TapTest::judge() const {
+  std::vector<double> peak(ringing_.size(), 0.0);
+  for (const std::vector<double>& row : pulse_rows_)
+    for (std::size_t a = 0; a < peak.size(); ++a)
+      if (std::isfinite(row[a])) peak[a] = std::max(peak[a], std::abs(row[a]));
+  const auto largest = std::max_element(peak.begin(), peak.end());
+  const auto axis = static_cast<std::size_t>(largest - peak.begin());
+  for (std::size_t a = 0; a < peak.size(); ++a)
+    if (a != axis && peak[a] > kClear * *largest) return {-1, 0, *largest};
+  for (const std::vector<double>& row : pulse_rows_)
+    if (std::abs(row[axis]) >= kFirst * *largest)
+      return {static_cast<int>(axis), row[axis] > 0 ? 1 : -1, *largest};
+  return {-1, 0, *largest};
+}
 
 std::string channels_text(const std::vector<ChannelResult>& results) {
   std::string out =
@@ -96,7 +165,7 @@ std::string ChannelCheck::problem(std::size_t a, const ChannelResult& r) const {
   const double configured = axes_[a].noise_density;
   if (r.samples == 0) return r.saturated > 0 ? "saturated: every sample" : "no samples";
   if (r.saturated > 0) return fmt::format("saturated: {} samples", r.saturated);
-  if (r.stuck > 0 || r.rms == 0) return "its value stands still";
+  if (r.stuck > 0 || r.rms == 0) return "stuck: its value stands still";
   if (static_cast<double>(r.missing) > kMaxMissing_ratio * static_cast<double>(sets_))
     return fmt::format("{:.1f} % of its samples are missing",
                        100 * static_cast<double>(r.missing) / static_cast<double>(sets_));
@@ -104,9 +173,9 @@ std::string ChannelCheck::problem(std::size_t a, const ChannelResult& r) const {
     return fmt::format("{:.0f} % of its range is used", 100 * r.peak / r.range);
   const bool moves = r.rms > kMaxWhite * r.noise_density * std::sqrt(rate_hz_ / 2);
   if (!moves && configured > 0 && r.noise_density > kMaxNoise * configured)
-    return fmt::format("noise {:.1f} times what is configured", r.noise_density / configured);
+    return fmt::format("noise {:.1f} times the configured one", r.noise_density / configured);
   if (std::abs(r.offset) > kMaxOffset_mps2)
-    return fmt::format("rests at {:+.2f} m/s^2: not level, or an offset to configure", r.offset);
+    return fmt::format("rests at {:+.2f} m/s^2: level it or configure its offset", r.offset);
   return "";
 }
 

@@ -24,7 +24,6 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "daemon/tools/session/recorder.h"
-#include "daemon/tools/session/session_command.h"
 #include "daemon/tools/session/session_desk.h"
 #include "daemon/tools/session/session_finish.h"
 #include "drivers/files/descriptor.h"
@@ -39,24 +38,26 @@ namespace fs = std::filesystem;
 constexpr int kPoll_ms = 50;
 constexpr std::int64_t kStatus_us = 1'000'000, kNoSamples_us = 10'000'000;
 
-/// A listener: it starts no node and sends no SYNC, which is the estimator's business.
+/// Returns the map without starting nodes and sending SYNC: the recorder only listens, `run` does
+/// both.
 drivers::CanMap listening(drivers::CanMap map) {
   for (drivers::CanBusMap& bus : map.buses) bus.send_sync = bus.nmt_start = false;
   return map;
 }
 
-/// One recorder per folder: no two write into it.
+/// Locks a folder so that only one recorder writes into it.
 class FolderLock {
  public:
-  /// Empty, or why not.
+  /// Returns an empty string, or why the folder cannot be locked.
   std::string lock(const std::string& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     file_.reset(drivers::open_own_file(folder + "/.recorder", O_RDWR | O_CREAT));
     if (file_.get() < 0)
-      return fmt::format("{}: sessions cannot be stored there: {}", folder, std::strerror(errno));
+      return fmt::format("{}: cannot store sessions there: {}", folder, std::strerror(errno));
     if (::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) return "";
-    return fmt::format("{}: another framewatch record works there; tell it with --send", folder);
+    return fmt::format("{}: another framewatch record uses it; command that one with --send",
+                       folder);
   }
 
  private:
@@ -82,18 +83,19 @@ class RecordCommand {
     step_ = a_.standby ? Step::standby : a_.check ? Step::check : Step::begin;
     while (step_ != Step::done) {
       poll();
-      desk_.look();
+      desk_.poll();
       const std::int64_t now_us = host_clock_us();
       recorder_.tick(now_us);
       advance(now_us);
-      look_at_child();
+      poll_child();
       publish(now_us);
     }
     return exit_code_;
   }
 
  private:
-  /// Of a command without --standby: check, tap test, session, finishing; standby: until stopped.
+  /// Without --standby: check, tap, begin, session, finishing, done. With it: standby until
+  /// stopped.
   enum class Step { check, tap, begin, session, finishing, standby, done };
 
   std::vector<std::string> channels() const {
@@ -147,7 +149,7 @@ class RecordCommand {
     }
   }
 
-  /// Since the newest sample, or since it listens when none has come.
+  /// Fails after --wait seconds without a sample, counted from the newest one.
   void wait_for_samples(std::int64_t now_us) {
     if (const double s = recorder_.checked_s(); started_us_ == 0 || s > heard_s_) {
       heard_s_ = s;
@@ -158,7 +160,8 @@ class RecordCommand {
     next_word_us_ = now_us + kNoSamples_us;
     if (now_us >= waits_until_us())
       return fail(fmt::format("no samples for {:g} s (--wait): nothing was recorded", a_.wait_s));
-    log(LogLevel::warning, "no samples yet: are the sensors' messages on this LCM? Ctrl-C ends it");
+    log(LogLevel::warning,
+        "no samples yet: do the sensors publish on this LCM URL? Press Ctrl-C to stop");
   }
 
   std::int64_t waits_until_us() const {
@@ -200,9 +203,9 @@ class RecordCommand {
     to_finish_.push_back(folder);
   }
 
-  /// Stages, other formats and the report are another process' work: whatever happens to it, the
-  /// logs are closed.
-  void look_at_child() {
+  /// Starts and polls the process that finds stages, converts logs and writes the report. The logs
+  /// are closed, so they survive whatever happens to it.
+  void poll_child() {
     if (!child_ && !to_finish_.empty()) {
       finishing_ = to_finish_.front();
       to_finish_.pop_front();
@@ -235,7 +238,7 @@ class RecordCommand {
     std::string news = "the report is ready";
     if (code != 0) {
       news = fmt::format(
-          "the logs are whole, but what comes after them failed ({}); try framewatch record {} "
+          "the logs are complete, but finishing the session failed ({}); try framewatch record {} "
           "--finish {}",
           how, a_.config, finishing_);
       log(LogLevel::error, news);
@@ -252,7 +255,7 @@ class RecordCommand {
     const bool changed = status.state != said_state_ || status.message != said_news_ ||
                          status.answered != said_answer_ || status.report != said_report_;
     if (!changed && now_us < next_status_us_) return;
-    if (changed && !a_.quiet) tell(status);
+    if (changed && !a_.quiet) log_changes(status);
     said_state_ = status.state;
     said_news_ = status.message;
     said_answer_ = status.answered;
@@ -263,11 +266,11 @@ class RecordCommand {
                  static_cast<unsigned>(bytes_.size()));
   }
 
-  void tell(const session_status_t& s) const {
+  void log_changes(const session_status_t& s) const {
     if (s.answered != said_answer_ && !s.refused.empty())
       log(LogLevel::warning, "refused: " + s.refused);
     if (s.state != said_state_ && s.state == static_cast<int>(RecorderState::armed))
-      log(LogLevel::info, fmt::format("armed: begins {:g} m/s^2 from rest", s.trigger_mps2));
+      log(LogLevel::info, fmt::format("armed: triggers {:g} m/s^2 from rest", s.trigger_mps2));
     if (s.state != said_state_ && s.state == static_cast<int>(RecorderState::recording))
       log(LogLevel::info, fmt::format("recording {}/{}{}", a_.out, s.session,
                                       s.length_s > 0 ? fmt::format(" for {:g} s", s.length_s)
@@ -311,11 +314,11 @@ int record(const RecordArguments& a) {
     good = false;
   }
   if (a.standby && (!a.send.empty() || a.tap_s > 0)) {
-    (void)refuse("record", "--standby waits for commands: leave --send and --tap-test out");
+    (void)refuse("record", "--standby waits for commands: remove --send and --tap-test");
     good = false;
   }
   if (!a.send.empty() && !a.url.empty()) {
-    (void)refuse("record", "--send goes over the recorder's socket, not over LCM: leave --url out");
+    (void)refuse("record", "--send uses the recorder's socket, not LCM: remove --url");
     good = false;
   }
   if (const std::string why = config && a.send.empty() ? nothing_to_hear(*config, a.by_name) : "";

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <filesystem>
 
+#include <framewatch/session_status_t.hpp>
+
 #include <fmt/core.h>
 
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
-#include "daemon/monitor/estimation/estimation.h"
+#include "daemon/base/process_usage.h"
 #include "daemon/monitor/estimation/publisher.h"
+#include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "drivers/can/can_log.h"
 #include "drivers/files/text_output.h"
@@ -19,10 +22,11 @@ namespace {
 
 constexpr double kCheck_s = 3, kMaxBefore_s = 62;  // the longest pre-trigger and its slack
 constexpr std::size_t kMaxBeforeBytes = std::size_t{64} << 20;
-constexpr std::int64_t kAfter_us = 500'000;       // estimates of the last samples are on their way
-constexpr std::int64_t kSilence_us = 10'000'000;  // over its length, of a session without samples
+constexpr std::int64_t kAfter_us = 500'000;  // for the estimates of the last samples to arrive
+constexpr std::int64_t kSilence_us =
+    10'000'000;  // from the length's end of a session without samples
 constexpr std::int64_t kTroubleEvery_us = 10'000'000;
-constexpr std::size_t kMaxVerb = 40;  // bytes of one that is not known
+constexpr std::size_t kMaxVerb = 40;  // bytes shown of an unknown verb
 constexpr double kSlack_s = 0.1;
 constexpr double kTapOverRest = 8, kMinTap_mps2 = 0.05;
 
@@ -31,7 +35,7 @@ bool has_lcm_axes(const Config& config) {
                      [](const AxisSource& s) { return s.can.empty(); });
 }
 
-/// The base's, or all when it has none.
+/// Returns the horizontal axes of the base, or all horizontal axes if the base has no sensor.
 std::vector<std::size_t> axes_that_trigger(const std::vector<estimator::SensorAxis>& axes) {
   std::vector<std::size_t> base, all;
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -127,15 +131,14 @@ void Recorder::look_for_tap(const std::vector<double>& distance) {
   const auto tap = taps_.push(distance, threshold);
   if (!tap) return;
   if (tap->axis < 0) {
-    news_ = "a tap that several sensors felt alike: tap next to one sensor";
+    news_ = "several sensors felt this tap alike: tap next to one sensor";
     return;
   }
   const auto axis = static_cast<std::size_t>(tap->axis);
   polarity_[axis] = tap->sign;
   const auto left = std::count(polarity_.begin(), polarity_.end(), 0);
   news_ = fmt::format("{}: {}, {:.2f} m/s^2; {} not tapped yet", config_.pipeline.axes[axis].name,
-                      tap->sign > 0 ? "positive, as it should be" : "NEGATIVE: reversed", tap->peak,
-                      left);
+                      tap->sign > 0 ? "positive, correct" : "NEGATIVE: reversed", tap->peak, left);
   if (left == 0) state_ = RecorderState::waiting;
 }
 
@@ -198,14 +201,14 @@ void Recorder::obey(const session_command_t& c, const std::string& user, std::in
   else if (c.verb == "stop")
     refused_ = stop("command", now_us);
   else if (c.verb == "arm" && !(c.trigger_mps2 > 0))
-    refused_ = "arming needs a trigger level";
+    refused_ = "arm needs a trigger level";
   else if (c.verb == "start" && c.trigger_mps2 > 0)
-    refused_ = "starting at once needs no trigger level";
+    refused_ = "start takes no trigger level: use arm";
   else if (c.verb == "arm" || c.verb == "start")
     refused_ = begin(request, now_us, user);
   else
     refused_ = "no such command: " + printable(c.verb, kMaxVerb);
-  if (refused_.empty()) log(LogLevel::notice, fmt::format("{}, says {}", c.verb, user));
+  if (refused_.empty()) log(LogLevel::notice, fmt::format("{}, by {}", c.verb, user));
 }
 
 void Recorder::finished(const std::string& report, const std::string& news) {
@@ -227,12 +230,12 @@ std::string Recorder::open(std::int64_t now_us, const std::string& triggered_by)
   if (!files->open(sessions_ + "/" + folder, has_lcm_axes(config_), !config_.can.empty(), problem))
     return problem;
   folder_ = folder;
-  // The trigger is seen in an instant that is closed, up to lateness_s after its samples came.
+  // The trigger is found in a closed instant, up to lateness_s after its samples arrived.
   const double back_s =
       session_.request.pre_trigger_s + config_.pipeline.options.lateness_s + kSlack_s;
   const std::int64_t from_us = now_us - static_cast<std::int64_t>(1e6 * back_s);
   const bool before = !triggered_by.empty();
-  // What names the samples and the parameters comes first.
+  // Tables that name samples and parameters come first.
   for (auto& [channel, table] : tables_) {
     KeptMessage first = table;
     first.received_us = before ? from_us : now_us;
@@ -296,29 +299,76 @@ void Recorder::tick(std::int64_t now_us) {
   if (length_s > 0 && close_at_us_ == 0 &&
       now_us > session_.began_us + static_cast<std::int64_t>(1e6 * length_s) + kSilence_us)
     (void)stop("no samples", now_us);
-  look_at_disk(now_us);
+  check_disk(now_us);
   if (close_at_us_ != 0 && now_us >= close_at_us_) close();
 }
 
-/// Numbers never seen, of messages and of CAN frames.
+/// Returns the messages and CAN frames lost, by their sequence numbers.
 std::int64_t Recorder::lost() const {
   std::int64_t sum = intake_.lost();
   for (std::size_t n = 0; n < config_.can.nodes.size(); ++n) sum += can_.node(n).lost;
   return sum;
 }
 
-void Recorder::look_at_disk(std::int64_t now_us) {
+void Recorder::check_disk(std::int64_t now_us) {
   const std::string why = log_->trouble();
   if (why.empty() && disk_failing_) {
     disk_failing_ = false;
-    news_ = fmt::format("the disk takes what is recorded again: {} messages were dropped",
+    news_ = fmt::format("the recording is written to disk again; {} messages were dropped",
                         log_->dropped());
   } else if (!why.empty() && now_us >= trouble_said_us_) {
     disk_failing_ = true;
     trouble_said_us_ = now_us + kTroubleEvery_us;
-    news_ = "the disk does not take what is recorded: " + why;
+    news_ = "cannot write the recording: " + why;
     log(LogLevel::error, news_);
   }
+}
+
+std::vector<ChannelResult> Recorder::channel_results() const {
+  std::vector<ChannelResult> out =
+      state_ == RecorderState::recording ? check_.results(acquisition_.counters()) : check_results_;
+  for (std::size_t a = 0; a < out.size(); ++a) {
+    out[a].polarity = polarity_[a];
+    if (polarity_[a] < 0 && out[a].problem.empty())
+      out[a].problem = "reversed: change its polarity in the configuration";
+  }
+  return out;
+}
+
+session_status_t Recorder::status(std::int64_t now_us) const {
+  session_status_t s{};
+  s.time_us = now_us;
+  s.state = static_cast<std::int32_t>(state_);
+  s.test = session_.request.test;
+  s.session = folder_;
+  s.report = report_;
+  s.message = news_;
+  s.answered = answered_;
+  s.refused = refused_;
+  const bool recording = state_ == RecorderState::recording;
+  if (recording && session_.trigger_us != 0)
+    s.elapsed_s = 1e-6 * static_cast<double>(newest_us_ - session_.trigger_us);
+  s.length_s = session_.request.length_s;
+  s.trigger_mps2 = session_.request.trigger_mps2;
+  s.messages = log_ ? log_->messages() : session_.messages;
+  s.estimates = session_.estimates;
+  s.lost = log_ ? lost() - lost_before_ : session_.lost;
+  s.dropped = log_ ? log_->dropped() : session_.dropped;
+  s.bytes = log_ ? log_->bytes() : 0;
+  s.disk_free_bytes = disk_free_bytes(sessions_);
+  for (const ChannelResult& r : channel_results()) {
+    s.name.push_back(r.name);
+    s.noise_mps2_per_rthz.push_back(r.noise_density);
+    s.rms_mps2.push_back(r.rms);
+    s.offset_mps2.push_back(r.offset);
+    s.peak_mps2.push_back(r.peak);
+    s.range_mps2.push_back(r.range);
+    s.saturated.push_back(r.saturated);
+    s.polarity.push_back(r.polarity);
+    s.problem.push_back(r.problem);
+  }
+  s.channels = static_cast<std::int32_t>(s.name.size());
+  return s;
 }
 
 }  // namespace framewatch::daemon

@@ -13,10 +13,7 @@
 #include "daemon/config/config.h"
 #include "daemon/tools/report/session_file.h"
 #include "daemon/tools/session/axis_check.h"
-#include "daemon/tools/session/message_ring.h"
-#include "daemon/tools/session/rest_level.h"
 #include "daemon/tools/session/session_log.h"
-#include "daemon/tools/session/tap_test.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/motion/acquisition.h"
@@ -25,9 +22,9 @@ namespace framewatch::daemon {
 
 enum class RecorderState { waiting, tapping, armed, recording };
 
-/// Acquisition sessions: raw samples and estimates into the logs of a folder per session, a check
-/// of the channels before it, a trigger. It neither estimates nor writes
-/// reports, so their failure costs no sample. The caller passes the host's time, microseconds.
+/// Records sessions: checks the channels, waits for a trigger, and writes raw samples and estimates
+/// to the logs of a folder per session. It neither estimates nor writes reports, so their failure
+/// costs no sample. The caller passes the host's time, microseconds.
 class Recorder {
  public:
   /// Called with the folder of a session after its files are closed.
@@ -36,7 +33,7 @@ class Recorder {
   /// `config` must outlive this. Sessions become folders in `sessions`.
   Recorder(const Config& config, std::string sessions, Ended ended);
 
-  /// LCM channels that are stored.
+  /// Returns the LCM channels that are stored.
   std::vector<std::string> channels() const;
   void message(const std::string& channel, const void* data, std::size_t size,
                std::int64_t received_us, const drivers::LcmSender& sender = {});
@@ -45,26 +42,26 @@ class Recorder {
   void tick(std::int64_t now_us);
 
   // Each returns an empty string, or the reason why it was refused.
-  /// Arms when the request has a trigger, else starts at once. user: who asked for it, if anybody.
+  /// Arms when the request has a trigger, otherwise starts at once. user: sender of the command;
+  /// may be empty.
   std::string begin(const SessionRequest& request, std::int64_t now_us,
                     const std::string& user = {});
   std::string tap();
   /// Ends the session half a second later, or the tap test, or disarms.
   std::string stop(const std::string& why, std::int64_t now_us);
-  /// Executes a command of this user, once for each id; status() has the answer.
+  /// Executes a user's command, once per id. The answer is in status().
   void obey(const session_command_t& command, const std::string& user, std::int64_t now_us);
 
   RecorderState state() const { return state_; }
-  /// Whether the channels have been checked.
-  bool checked() const { return !check_results_.empty(); }
-  /// Seconds of samples that the check has had so far.
+  bool checked() const { return !check_results_.empty(); }  ///< the channels have been checked
+  /// Returns the seconds of samples that the running check has seen.
   double checked_s() const { return check_.seconds(); }
-  /// Results of the newest check, or of the running session.
+  /// Returns the results of the newest check, or of the running session.
   std::vector<ChannelResult> channel_results() const;
   const std::string& news() const { return news_; }
   session_status_t status(std::int64_t now_us) const;
-  /// Takes the outcome of a finished session: the name of its folder when that has a report, and a
-  /// sentence about it.
+  /// Takes the outcome of finishing a session: the name of its folder if it has a report, and a
+  /// sentence for the user.
   void finished(const std::string& report, const std::string& news);
 
  private:
@@ -75,7 +72,7 @@ class Recorder {
   void look_for_trigger(const std::vector<double>& distance);
   std::string open(std::int64_t now_us, const std::string& triggered_by);
   void close();
-  void look_at_disk(std::int64_t now_us);
+  void check_disk(std::int64_t now_us);
   void write_session_file();
   std::int64_t lost() const;
 
@@ -90,7 +87,7 @@ class Recorder {
   TapTest taps_;
   std::vector<std::size_t> trigger_axes_;
   MessageRing before_;
-  std::map<std::string, KeptMessage> tables_;  ///< the newest of each
+  std::map<std::string, KeptMessage> tables_;  ///< the newest of each channel
 
   RecorderState state_ = RecorderState::waiting;
   std::vector<ChannelResult> check_results_;

@@ -6,6 +6,10 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
+#include "daemon/base/random_id.h"
+#include "daemon/monitor/service/command_client.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 
@@ -19,15 +23,15 @@ SessionDesk::SessionDesk(const Config& config, Recorder& recorder)
         return obey(command, user);
       }) {}
 
-void SessionDesk::look() {
+void SessionDesk::poll() {
   socket_.poll(steady_clock_us());
 }
 
 void SessionDesk::heard(const void* data, std::size_t size, std::int64_t now_us) {
   if (!config_.lcm.commands) {
     ++not_obeyed_;
-    return warnings_(now_us, fmt::format("commands over LCM are not obeyed (lcm.commands = false): "
-                                         "{} came so far",
+    return warnings_(now_us, fmt::format("ignored {} commands over LCM so far; set lcm.commands = "
+                                         "true to allow them",
                                          not_obeyed_));
   }
   const auto command =
@@ -37,9 +41,9 @@ void SessionDesk::heard(const void* data, std::size_t size, std::int64_t now_us)
 
 CommandPacket SessionDesk::obey(const CommandPacket& command, const std::string& user) {
   if (command.channel != "SESSION_COMMAND")
-    return refused("framewatch record records, nothing else");
+    return refused("framewatch record takes session commands only");
   const auto wanted = drivers::decoded<session_command_t>(command.bytes);
-  if (!wanted) return refused("the command is not understood: another version?");
+  if (!wanted) return refused("cannot decode the command: do the versions differ?");
   const std::int64_t now_us = host_clock_us();
   recorder_.obey(*wanted, user, now_us);
   const session_status_t now = recorder_.status(now_us);
@@ -50,6 +54,33 @@ CommandPacket SessionDesk::obey(const CommandPacket& command, const std::string&
   answer.answered = now.answered;
   answer.refused = now.refused;
   return {"SESSION", drivers::encoded(answer)};
+}
+
+session_command_t session_command(const std::string& verb, const SessionRequest& request) {
+  session_command_t c{};
+  c.id = random_id();
+  c.verb = verb;
+  c.test = request.test;
+  c.operator_name = request.operator_name;
+  c.notes = request.notes;
+  c.length_s = request.length_s;
+  c.trigger_mps2 = request.trigger_mps2;
+  c.pre_trigger_s = request.pre_trigger_s;
+  return c;
+}
+
+int send_session_command(const Config& config, const std::string& verb,
+                         const SessionRequest& request) {
+  const CommandAnswer answer = give_command(
+      config, "record", {"SESSION_COMMAND", drivers::encoded(session_command(verb, request))});
+  std::string problem = answer.problem;
+  if (problem.empty()) {
+    const auto status = drivers::decoded<session_status_t>(answer.bytes);
+    problem = status ? status->refused : "cannot decode the recorder's answer";
+  }
+  if (problem.empty()) return 0;
+  fmt::print(stderr, "framewatch record: {}\n", printable(problem));
+  return kFailed;
 }
 
 }  // namespace framewatch::daemon

@@ -123,7 +123,7 @@ void export_stages(const std::string& folder, const std::vector<Stage>& stages,
         const auto time_us = drivers::accel_time_us(e.data.data(), e.data.size());
         for (std::size_t i = 0; i < stages.size(); ++i) {
           const bool last = i + 1 == stages.size();
-          // The last sample is the last stage's; what names the channels is everybody's.
+          // The last sample belongs to the last stage, channel tables to every stage.
           if (!time_us || (*time_us >= stages[i].from_us &&
                            (*time_us < stages[i].to_us || (last && *time_us <= stages[i].to_us))))
             (void)logs[i]->write(e.timestamp_us, e.channel, e.data.data(), e.data.size());

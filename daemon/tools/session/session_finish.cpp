@@ -25,7 +25,7 @@ namespace framewatch::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kMissing_s = 2;  // more than this without an estimate, and they are made again
+constexpr double kMissing_s = 2;  // after so long without an estimate they are computed again
 constexpr const char* kReplayed = "estimates-replayed.lcmlog";
 
 class Finishing {
@@ -33,7 +33,7 @@ class Finishing {
   Finishing(const FinishArguments& a, const Config& config, SessionFile& session)
       : a_(a), config_(config), session_(session) {}
 
-  /// What a crash left under a partial name gets its own; a log of events without its torn end.
+  /// Gives partial files of a crash their final names. Event logs lose their torn end.
   void recover() {
     for (const char* name : {kRawLog, kCanLog, kEstimatesLog}) {
       const std::string path = a_.folder + "/" + name;
@@ -54,44 +54,44 @@ class Finishing {
       }
       if (whole && !error) {
         session_.files.push_back(name);
-        note(std::string(name) + ": the recording was cut off here; what is in it is whole");
+        note(std::string(name) + ": the recording was cut off; its contents are intact");
       } else {
-        problem(std::string(name) + ".partial: cannot be recovered " + error.message());
+        problem(std::string(name) + ".partial: cannot be recovered: " + error.message());
       }
     }
   }
 
-  void find_stages_of_it() {
+  void find_stages() {
     for (const char* name : {kRawLog, kCanLog})
       if (!drivers::is_absent(a_.folder + "/" + name)) raw_.push_back(a_.folder + "/" + name);
     std::vector<std::string> found;
     motion_ = raw_.empty() ? std::nullopt : read_session_motion(config_, raw_, found);
     for (std::string& p : found) problem(std::move(p));
     if (!motion_) return problem("there are no raw samples to evaluate");
-    session_.stages = find_stages(*motion_);
+    session_.stages = daemon::find_stages(*motion_);
     if (session_.end_us == 0) session_.end_us = motion_->time_us(motion_->accel.rows() - 1);
   }
 
-  /// The estimates that came, or new ones when they do not cover the samples.
+  /// Reads the recorded estimates, or computes new ones when they do not cover the samples.
   void choose_estimates() {
     read_estimates(kEstimatesLog);
     if (!motion_) return;
-    const std::string lack = what_is_missing();
-    if (lack.empty()) return;
+    const std::string missing = missing_estimates();
+    if (missing.empty()) return;
     ReplayArguments again;
     again.config = a_.config;
     again.inputs = raw_;
     again.out = a_.folder + "/" + kReplayed;
     again.salvage = again.quiet = true;
-    if (replay(again) != 0) return problem(lack + ", and they cannot be made again");
+    if (replay(again) != 0) return problem(missing + ", and replay cannot compute them");
     read_estimates(kReplayed);
     session_.files.push_back(kReplayed);
-    note(lack + fmt::format(": made again from the raw samples, {}", kReplayed));
+    note(missing + fmt::format(": computed again from the raw samples, {}", kReplayed));
   }
 
   void write_report() {
     if (!a_.report) return;
-    if (!estimates_) return problem("without estimates there is no report");
+    if (!estimates_) return problem("no report, because there are no estimates");
     SessionReport r;
     r.test = r.title = session_.request.test;
     r.operator_name = session_.request.operator_name;
@@ -107,7 +107,7 @@ class Finishing {
         a_.reports.empty() ? a_.folder + "/" + kReportPage
                            : a_.reports + "/" + fs::path(a_.folder).filename().string() + ".html";
     const std::string why = daemon::write_report(std::move(r), files, page);
-    if (!why.empty()) return problem(why + ": there is no report");
+    if (!why.empty()) return problem("no report: " + why);
     session_.report = page;
   }
 
@@ -132,7 +132,7 @@ class Finishing {
   }
 
  private:
-  /// For the person, but nothing has failed.
+  /// Prints and stores a note for the user; nothing has failed.
   void note(std::string text) {
     fmt::print(stderr, "framewatch record: {}\n", printable_lines(text));
     session_.finishing.push_back(std::move(text));
@@ -142,7 +142,7 @@ class Finishing {
     estimates_log_ = log;
     estimates_ = read_session_estimates(a_.folder + "/" + log, found);
   }
-  std::string what_is_missing() const {
+  std::string missing_estimates() const {
     const auto& e = estimates_;
     if (!e) return "there are no estimates";
     const double most_s = kMissing_s + 2 * config_.pipeline.options.hop_s;
@@ -150,11 +150,13 @@ class Finishing {
       return 1e-6 * static_cast<double>(to_us - from_us);
     };
     const double first_s = config_.pipeline.options.window_s + most_s;
-    if (seconds(motion_->first_us, e->end_us.front()) > first_s) return "the first estimates lack";
+    if (seconds(motion_->first_us, e->end_us.front()) > first_s)
+      return "the first estimates are missing";
     if (seconds(e->end_us.back(), motion_->time_us(motion_->accel.rows() - 1)) > most_s)
-      return "the last estimates lack";
+      return "the last estimates are missing";
     for (std::size_t w = 1; w < e->end_us.size(); ++w)
-      if (seconds(e->end_us[w - 1], e->end_us[w]) > most_s) return "estimates in between lack";
+      if (seconds(e->end_us[w - 1], e->end_us[w]) > most_s)
+        return "estimates in between are missing";
     return "";
   }
 
@@ -183,14 +185,14 @@ int finish_session(const FinishArguments& a) {
       fmt::print(stderr, "framewatch record: {}: is being recorded\n", a.folder);
       return kBadInput;
     }
-  // The recorder may be at the next session.
+  // The recorder may be recording the next session.
   (void)!::nice(5);
-  session->finishing.clear();  // of an earlier try
+  session->finishing.clear();  // notes of an earlier try
   Finishing finishing(a, *config, *session);
   if (config->sha256 != session->config_sha256)
-    finishing.problem(a.config + ": is not what the session was recorded with");
+    finishing.problem(a.config + ": differs from the configuration of the recording");
   finishing.recover();
-  finishing.find_stages_of_it();
+  finishing.find_stages();
   finishing.save();
   finishing.choose_estimates();
   finishing.write_report();

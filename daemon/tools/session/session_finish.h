@@ -15,8 +15,8 @@ struct FinishArguments {
 
 /// Finishes a session whose logs are closed, or were cut off by a crash: finds the stages, converts
 /// the logs, writes the report. Missing estimates are computed again from the raw samples. The logs
-/// are not changed, except that partial files of a crash get their final names. Exit code: 1 when
-/// something could not be done; session.json says what.
+/// stay unchanged, except that partial files of a crash get their final names. Returns the exit
+/// code: 1 when a step failed; session.json has the reasons.
 int finish_session(const FinishArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -7,6 +7,28 @@
 
 namespace framewatch::daemon {
 
+std::size_t MessageRing::cost(const KeptMessage& message) {
+  return sizeof message + message.channel.size() + message.bytes.size();
+}
+
+void MessageRing::push(KeptMessage message) {
+  const std::int64_t oldest_us = message.received_us - span_us_;
+  bytes_ += cost(message);
+  messages_.push_back(std::move(message));
+  while (!messages_.empty() && (bytes_ > most_bytes_ || messages_.front().received_us < oldest_us))
+    drop_oldest();
+}
+
+void MessageRing::drop_oldest() {
+  bytes_ -= cost(messages_.front());
+  messages_.pop_front();
+}
+
+void MessageRing::clear() {
+  messages_.clear();
+  bytes_ = 0;
+}
+
 bool SessionLog::open(const std::string& folder, bool lcm, bool can, std::string& error) {
   return (!lcm || raw_.open(folder + "/" + kRawLog, error)) &&
          (!can || can_.open(folder + "/" + kCanLog, error)) &&
@@ -16,11 +38,11 @@ bool SessionLog::open(const std::string& folder, bool lcm, bool can, std::string
 void SessionLog::write(const KeptMessage& m) {
   messages_ += m.kind != MessageKind::estimate;
   if (m.kind == MessageKind::frame) {
-    (void)can_.append(m.bytes);  // counted
+    (void)can_.append(m.bytes);  // failures are counted by the file
     return;
   }
   const bool raw = m.kind == MessageKind::raw;
-  // A number that is missing in the log is an event that was dropped.
+  // A dropped event leaves its number missing in the log.
   std::int64_t& number = raw ? raw_events_ : estimate_events_;
   event_.clear();
   drivers::append_log_event(event_, number++, m.received_us, m.channel, m.bytes.data(),

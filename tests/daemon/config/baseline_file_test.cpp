@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {

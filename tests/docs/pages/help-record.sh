@@ -9,6 +9,6 @@ recording sessions/.*_El-Centro-30 for 20 s
 ^sessions/.*_El-Centro-30/report.html
 triggered by base-[xy]
 ^sessions/.*_sweep/report.html
-: start, says
+: start, by
 ^sessions/.*_sweep/report.html
 '

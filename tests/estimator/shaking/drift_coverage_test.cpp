@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/lab/tall_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/shaking/shaking_watch.h"
 #include "estimator/shaking/story_drift.h"

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/tools/lab/accuracy_trial.h"
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/identify/groups/layout_prediction.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/simulate/linear_response.h"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/simulate/random.h"
 #include "estimator/state/archive.h"
 #include "estimator/watch/watch.h"

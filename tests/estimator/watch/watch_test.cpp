@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/simulate/random.h"
 #include "tests/support/shaken_minute.h"

@@ -1,4 +1,4 @@
-// Records of component tests as a diagnosis reads them.
+// Records as a diagnosis reads them, the channels it uses of them, and why it refuses one.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "daemon/tools/diagnosis/compared_channels.h"
 #include "daemon/tools/diagnosis/diagnose_records.h"
+#include "tests/estimator/diagnose/small_building.h"
 #include "tests/support/config_fixture.h"
 #include "tests/support/temporary.h"
 
@@ -90,6 +90,66 @@ TEST(DiagnoseRecords, ChannelsAreAlignedByTheirDelays) {
   EXPECT_LT((accel.col(0) - accel.col(1)).cwiseAbs().maxCoeff(), kRounding);
   EXPECT_NEAR(accel(700, 0), motion(700), kRounding);
   EXPECT_NEAR(compared_channels(config, records).axes[1].delay, 0.002, 1e-12);
+}
+
+TEST(ComparedChannels, ThoseForACheckAreLeftAside) {
+  const std::string check = "name = \"F1-Y1\"\ncheck = true\n";
+  Config config = test::good(test::replaced(test::kGoodConfig, "name = \"F1-Y1\"\n", check));
+  for (const int channel : {2, 4}) {
+    estimator::EffectPlace place;
+    place.kind = estimator::PlaceKind::channel;
+    place.channel = channel;
+    config.effects.push_back(make_effect(estimator::EffectKind::polarity, place));
+  }
+  std::vector<DiagnoseRecord> records(1);
+  records[0].samples.accel.resize(2, 7);
+  records[0].samples.accel << 0, 1, 2, 3, 4, 5, 6, 0, 1, 2, 3, 4, 5, 6;  // 6: a component's force
+  const ComparedChannels compared = compared_channels(config, records);
+  ASSERT_EQ(compared.axes.size(), 5U);
+  EXPECT_EQ(compared.axes[2].name, "F1-Y2");
+  ASSERT_EQ(compared.known.size(), 1U);
+  EXPECT_EQ(compared.known[0].place.channel, 3);
+  EXPECT_EQ(records[0].samples.accel.row(1),
+            (Eigen::RowVectorXd(6) << 0, 1, 3, 4, 5, 6).finished());
+}
+
+std::vector<std::string> problems_of(const Eigen::MatrixXd& record) {
+  const test::Small small;
+  const auto input = estimator::diagnosis_input(small.structure, small.axes, small.design, {},
+                                                {{test::kRate_hz, record, 0}});
+  std::vector<std::string> out;
+  add_segment_problems("monday.csv", *input, 0, {}, out);
+  return out;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(SegmentProblems, SayWhatToMeasure) {
+  const Eigen::MatrixXd whole = test::Small().record({}, 1);
+  EXPECT_TRUE(problems_of(whole).empty());
+  const std::vector<std::string> brief =
+      problems_of(whole.topRows(static_cast<Eigen::Index>(2 * test::kRate_hz)));
+  ASSERT_EQ(brief.size(), 1U);
+  EXPECT_TRUE(has(brief[0], "monday.csv: too short") && has(brief[0], "; measure ")) << brief[0];
+  estimator::Random random(1);
+  const std::vector<std::string> calm =
+      problems_of(whole.unaryExpr([&](double) { return test::kNoise_mps2 * random.normal(); }));
+  ASSERT_EQ(calm.size(), 1U);
+  EXPECT_TRUE(has(calm[0], "no excitation") && has(calm[0], "measure stronger")) << calm[0];
+}
+
+TEST(SegmentProblems, NameTheChannelsWhoseClockIsApart) {
+  constexpr Eigen::Index kLate = 30;
+  const Eigen::MatrixXd whole = test::Small().record({}, 1);
+  Eigen::MatrixXd late = whole.bottomRows(whole.rows() - kLate);
+  late.leftCols(4) = whole.leftCols(4).topRows(late.rows());
+  const std::vector<std::string> problems = problems_of(late);
+  ASSERT_EQ(problems.size(), 2U);
+  EXPECT_TRUE(has(problems[0], "monday.csv: clocks apart: y1, y2 read 0.6")) << problems[0];
+  EXPECT_TRUE(has(problems[0], "s later than base-x")) << problems[0];
+  EXPECT_TRUE(has(problems[1], "x1, x2 read 0.6") && has(problems[1], "delay_s")) << problems[1];
 }
 
 }  // namespace diagnose_records_test

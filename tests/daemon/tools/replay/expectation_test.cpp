@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/tools/replay/expectation_check.h"
 #include "daemon/tools/replay/replay_command.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"

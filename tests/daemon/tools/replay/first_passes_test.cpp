@@ -89,7 +89,7 @@ TEST_F(FirstPassesOf, ARecordWithoutMotionIsEstimatedAsItComes) {
   test::write_file(path("still.csv"), still);
   const test::ReplayOutcome o = test::replay_of({path("still.csv")});
   EXPECT_EQ(o.exit_code, 0) << o.err;
-  EXPECT_NE(o.err.find("too little to tune on first"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("too little motion to tune on first"), std::string::npos) << o.err;
 }
 
 TEST_F(FirstPassesOf, OfAnArchiveOnlyTheFirstMinuteOfMotionIsRead) {

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "daemon/tools/lab/few_sensors.h"
-#include "daemon/tools/replay/replay_arguments.h"
 #include "daemon/tools/replay/replay_command.h"
 #include "tests/support/temporary.h"
 

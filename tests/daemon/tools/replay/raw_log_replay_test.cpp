@@ -168,7 +168,7 @@ TEST_F(RawLogReplay, BlocksThatAreNoneAreRefusedAndLeftOutBySalvage) {
     if (event.channel == drivers::kCountsChannel && ++block == 3) event.data.resize(20);
     return true;
   });
-  expect_refused(log, "1 messages are none of a raw log, the first: COUNTS: ");
+  expect_refused(log, "1 messages are not valid in a raw log, the first: COUNTS: ");
   EXPECT_EQ(test::salvage_of(log, path("out.lcmlog")).exit_code, 0);
 }
 
@@ -176,7 +176,7 @@ TEST_F(RawLogReplay, AResolutionThatIsNoneIsRefused) {
   for (const double bad : {0.0, -1e-6, std::numeric_limits<double>::infinity(),
                            std::numeric_limits<double>::quiet_NaN()})
     expect_refused(with_blocks([&](accel_counts_t& b) { b.resolution_mps2 = bad; }),
-                   "messages are none of a raw log");
+                   "messages are not valid in a raw log");
 }
 
 TEST_F(RawLogReplay, TimesAndChannelsBeyondEveryBoundAreLeftAlone) {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/tools/replay/log_survey.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_log.h"
 #include "tests/support/temporary.h"

@@ -30,7 +30,7 @@ class ReplayRefusal : public test::ReplayFixture {};
 TEST_F(ReplayRefusal, TruncatedLogIsRefusedOrSalvagedUpToItsEnd) {
   const std::string bytes = read_file(log());
   write_file(path("cut"), bytes.substr(0, bytes.size() - 10));
-  expect_refused(path("cut"), "--salvage uses what is intact");
+  expect_refused(path("cut"), "--salvage uses the intact parts");
   const Outcome o = salvage_of(path("cut"), path("est.lcmlog"));
   EXPECT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("truncated, "), std::string::npos) << o.err;

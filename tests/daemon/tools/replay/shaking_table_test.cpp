@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config/config.h"
-#include "daemon/tools/lab/measured_table.h"
+#include "daemon/tools/lab/data_files.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/support/data.h"

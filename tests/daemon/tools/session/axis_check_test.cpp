@@ -8,9 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/session/rest_level.h"
-#include "daemon/tools/session/tap_test.h"
-
 namespace framewatch::daemon {
 namespace axis_check_test {
 

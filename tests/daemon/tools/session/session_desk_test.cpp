@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include "daemon/monitor/service/command_client.h"
-#include "daemon/tools/session/session_command.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/daemon/tools/session/recorder_bench.h"
@@ -26,7 +25,7 @@ struct DeskBench : test::RecorderBench {
   /// What the recorder answers, while it looks after its desk.
   CommandAnswer give(SessionDesk& desk, const CommandPacket& command) const {
     auto answer = std::async(std::launch::async, give_command, config, "record", command);
-    while (answer.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) desk.look();
+    while (answer.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) desk.poll();
     return answer.get();
   }
 };

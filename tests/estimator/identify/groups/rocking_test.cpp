@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/tools/lab/accuracy_trial.h"
-#include "daemon/tools/lab/tall_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/diagnose/fit/diagnosis_input.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 #include "estimator/identify/groups/floor_coordinates.h"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "daemon/tools/lab/accuracy_trial.h"
-#include "daemon/tools/lab/paper_method.h"
 #include "estimator/simulate/linear_response.h"
 #include "tests/support/paper_buildings.h"
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/tools/lab/accuracy_trial.h"
-#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/study_buildings.h"
 #include "estimator/simulate/ground_motion.h"
 #include "tests/support/pipeline_run.h"
 

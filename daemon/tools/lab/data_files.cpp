@@ -1,18 +1,35 @@
-#include "daemon/tools/lab/measured_table.h"
+#include "daemon/tools/lab/data_files.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 
+#include "daemon/tools/simulation/recorded_motion.h"
 #include "drivers/formats/record_file.h"
 #include "drivers/records/record_builder.h"
 
 namespace framewatch::daemon {
 namespace {
 
+std::optional<estimator::GroundMotion> read(const std::string& path,
+                                            const MotionFileFormat& format) {
+  std::string problem;
+  estimator::GroundMotion motion = read_recorded_motion(path, format, problem);
+  if (!problem.empty()) return std::nullopt;
+  return motion;
+}
+
 constexpr const char* kFolder = "/mini_shake_table_xsens_2025/Flexible_vs_Stiff/Flexible_3_story/";
 
 }  // namespace
+
+std::optional<estimator::GroundMotion> el_centro_ns(const std::string& data) {
+  return read(data + "/ground_motions/elcentro_NS.dat", {"g", 0, ""});
+}
+
+std::optional<estimator::GroundMotion> hachinohe_ns(const std::string& data) {
+  return read(data + "/ground_motions/hachi.txt", {"gal", 0.01, ""});
+}
 
 const std::vector<MeasuredRun>& measured_runs() {
   static const std::vector<MeasuredRun> runs = {
