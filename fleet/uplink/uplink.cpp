@@ -10,7 +10,6 @@
 #include "daemon/base/process_usage.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/number_text.h"
-#include "drivers/lcm/message_check.h"
 #include "fleet/message/subject.h"
 #include "fleet/uplink/inventory.h"
 #include "fleet/uplink/summary_message.h"
@@ -45,22 +44,25 @@ Uplink::Uplink(UplinkSettings settings, Link& link, CommandDesk::Acknowledge ack
 }
 
 std::vector<std::string> Uplink::channels() {
-  std::vector<std::string> out = NewestMessages::channels();
-  out.emplace_back("EVENT");
-  return out;
+  std::vector<daemon::DaemonMessage> messages = NewestMessages::messages();
+  messages.push_back(daemon::DaemonMessage::event);
+  return daemon::LatestMessages("").channels(messages);
 }
 
 void Uplink::heard(std::string_view channel, std::span<const std::uint8_t> bytes) {
-  newest_.heard(channel, bytes);
-  if (channel != "EVENT") return;
-  auto event = drivers::decoded<event_t>(bytes);
-  if (!event) return;
+  const auto changed = latest_.update(channel, bytes);
+  if (!changed) return;
+  newest_.update(latest_, *changed, bytes);
+  if (changed == daemon::DaemonMessage::event) hear_event(*latest_.event);
+}
+
+void Uplink::hear_event(const event_t& event) {
   if (live_.size() >= kMaxLive) {
     live_.pop_front();  // the history has it
     ++lost_live_;
     look_again_ = true;
   }
-  live_.push_back(std::move(*event));
+  live_.push_back(event);
 }
 
 void Uplink::step(Instant now) {
@@ -87,7 +89,7 @@ void Uplink::hear_link(Instant now) {
   if (link_.connections() == connections_) return;
   connections_ = link_.connections();
   rewind_ = true;
-  newest_.again();
+  newest_.restart();
   window_.reconnected(now.steady_us);
 }
 
@@ -182,7 +184,7 @@ void Uplink::say_inventory(Instant now) {
   const auto& periods_s = settings_.history.summary_s;
   const std::string text = inventory(outbox_.history(), *outbox_.newest_us(),
                                      periods_s.at(periods_s.size() > 1 ? 1 : 0));
-  if (!text.empty()) newest_.text("inventory", "json", text);
+  if (!text.empty()) newest_.set_text("inventory", "json", text);
 }
 
 /// The file that runs, not one that was changed since.
@@ -192,7 +194,7 @@ void Uplink::say_config() {
   config_sent_ = runs;
   std::string error;
   const auto text = daemon::read_text_file(settings_.config, error);
-  if (text && daemon::sha256(*text) == runs) newest_.text("config", "toml", *text);
+  if (text && daemon::sha256(*text) == runs) newest_.set_text("config", "toml", *text);
 }
 
 /// Events, heartbeat and the like, newest summaries, older ones, raw samples.
@@ -249,7 +251,7 @@ bool Uplink::fill_periods(Instant now) {
   const std::string& building = settings_.fleet.building;
   const std::string key = message_key(building, period.key);
   if (window_.has(key) || unstored_keys_.contains(key)) return true;
-  const auto summary = summary_message(outbox_.history(), period.key, newest_.table());
+  const auto summary = summary_message(outbox_.history(), period.key, latest_.parameters);
   if (!summary) return true;
   Outgoing out;
   out.summary = period.key;

@@ -15,6 +15,7 @@
 
 #include "daemon/config/keys/fleet_options.h"
 #include "daemon/config/keys/history_options.h"
+#include "daemon/monitor/service/latest_messages.h"
 #include "fleet/link/link.h"
 #include "fleet/uplink/command_desk.h"
 #include "fleet/uplink/newest_messages.h"
@@ -71,6 +72,7 @@ class Uplink {
   void say_inventory(Instant now);
   void say_config();
   void fill(Instant now);
+  void hear_event(const event_t& event);
   bool add_event(const event_t& event, Instant now);
   bool fill_periods(Instant now);
   bool add(Outgoing outgoing, Instant now);
@@ -86,6 +88,7 @@ class Uplink {
   Link& link_;
   SentStore store_;
   Outbox outbox_;
+  daemon::LatestMessages latest_{""};
   NewestMessages newest_;
   SendWindow window_;
   CommandDesk desk_;

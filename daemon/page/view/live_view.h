@@ -10,11 +10,11 @@
 
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/session_command_t.hpp>
-#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/message_sink.h"
+#include "daemon/monitor/service/latest_messages.h"
 #include "daemon/page/findings/answers.h"
 #include "daemon/page/findings/model_fit.h"
 #include "daemon/page/findings/shaking.h"
@@ -66,11 +66,12 @@ class LiveView {
   bool tell_recorder(const session_command_t& command);
 
  private:
-  void parameters(std::span<const std::uint8_t> bytes);
-  void estimate(const std::string& channel, std::span<const std::uint8_t> bytes);
-  void late_estimate(std::span<const std::uint8_t> bytes);
+  void show(DaemonMessage changed);
+  void show_alarms(DaemonMessage changed);
+  void parameters(const parameter_table_t& table);
+  void estimate(int window, const window_estimate_t& estimate);
+  void other_estimate(const std::string& channel, std::span<const std::uint8_t> payload);
   void look_for_changes(int window, const window_estimate_t& estimate);
-  void alarms_message(const std::string& name, std::span<const std::uint8_t> bytes);
   /// Without [watch] changes of stiffness are found by pages, not by `framewatch run`.
   bool found_here(const event_t& event) const;
   void keep(const std::string& name, std::string json);
@@ -88,12 +89,12 @@ class LiveView {
   const Config& config_;
   MessageSink publish_;
   std::vector<std::string> estimate_channels_;  ///< by window, without the long one
+  LatestMessages latest_;
   MotionRows motion_;
   estimator::Acquisition acquisition_;
   drivers::AccelIntake intake_;
   std::vector<std::string> parameters_;  ///< names; empty: not known yet
   std::optional<PageWatch> watch_;
-  std::optional<watch_t> told_watch_;  ///< of `framewatch run` with [watch]
   std::optional<window_estimate_t> newest_;
   bool new_estimate_ = false;  ///< since the last flush
   bool late_rows_ = false;     ///< rows of history_ have values now that they lacked
