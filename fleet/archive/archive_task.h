@@ -35,4 +35,26 @@ std::optional<ArchiveTask> read_manifest_line(std::string_view line, std::string
 std::optional<std::vector<ArchiveTask>> read_manifest(const std::string& path,
                                                       std::string& problem);
 
+/// One process at a time does a task: who comes second waits until the first has ended, well or
+/// not. A file beside the task's output, gone with the lock.
+class TaskLock {
+ public:
+  TaskLock() = default;
+  ~TaskLock();
+  TaskLock(const TaskLock&) = delete;
+  TaskLock& operator=(const TaskLock&) = delete;
+
+  /// Waits. Empty, or why not.
+  std::string take(const std::string& path);
+
+ private:
+  std::string path_;
+  int file_ = -1;
+};
+
+/// SHA-256 that two programs share only when they do the same: of the version and the build id that
+/// the linker made of the program's content; of the file where it has none. Empty when it cannot be
+/// read.
+std::string program_identity();
+
 }  // namespace framewatch::fleet

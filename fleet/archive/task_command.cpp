@@ -5,27 +5,120 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
+#include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/process_usage.h"
+#include "daemon/base/sqlite_file.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "daemon/tools/replay/first_passes.h"
+#include "daemon/tools/replay/history_output.h"
+#include "daemon/tools/replay/replay_survey.h"
 #include "drivers/files/text_output.h"
 #include "fleet/archive/archive_task.h"
-#include "fleet/archive/parameter_means.h"
-#include "fleet/archive/program_identity.h"
-#include "fleet/archive/reidentify.h"
-#include "fleet/archive/task_lock.h"
 
 namespace framewatch::fleet {
 namespace {
+
+/// What became of a task.
+struct Reidentified {
+  std::string problem;             ///< why there is no output; empty: there is
+  std::vector<std::string> notes;  ///< damage and what else the reader should know
+  int passes = 1;                  ///< over the logs: tuned on first, then estimated
+  std::int64_t windows = 0;        ///< that were published, those of the warm-up too
+  std::int64_t instants = 0;       ///< of the common grid
+  std::int64_t damaged_bytes = 0;
+  double measured_s = 0;  ///< sensor time that was read
+};
+
+constexpr double kAfter_s = 10;  // until the last window of the task is out
+constexpr std::size_t kMaxNotes = 20;
+
+daemon::ReplaySpan span_of(const ArchiveTask& task) {
+  const auto length_us = static_cast<double>(task.to_us - task.warm_up_us);
+  return {0, length_us * 1e-6 + kAfter_s, task.warm_up_us};
+}
+
+/// Runs the logs of a task through an estimation into `path`, a database with the tables of a
+/// history, of the task's time alone. Whatever is intact of a damaged log is used.
+Reidentified reidentify(const daemon::Config& config, const ArchiveTask& task,
+                        const std::string& path) {
+  Reidentified out;
+  daemon::HistoryOutput history(config);
+  const std::int64_t longest_us = history.longest_s() * daemon::kSecond_us;
+  if (task.from_us % longest_us != 0 || task.to_us % longest_us != 0) {
+    out.problem = fmt::format("begin and end are no multiples of the longest summary, {} s",
+                              history.longest_s());
+    return out;
+  }
+  history.keep(task.from_us, task.to_us);
+  if (!history.open(path)) {
+    out.problem = path + ": " + history.error();
+    return out;
+  }
+  bool taken = true;
+  daemon::Estimation estimation(config, [&](std::int64_t time_us, const std::string& channel,
+                                            const std::vector<std::uint8_t>& bytes) {
+    taken = taken && history.put(time_us, channel, bytes);
+  });
+  const daemon::FirstPasses first(config, {task.logs, {}, true, span_of(task)});
+  if (first.tuning()) estimation.start_tuned(*first.tuning());
+  out.passes = first.passes() + 1;
+  fmt::print(stderr, "task {}: {}\n", task.number, first.note());
+  daemon::ReplaySurvey survey(config, true, span_of(task));
+  survey.feed(estimation);
+  for (const std::string& log : task.logs)
+    if (survey.problems().empty() && taken) survey.add(log);
+  estimation.finish();
+  out.notes = survey.notes();
+  if (out.notes.size() > kMaxNotes) {
+    out.notes.resize(kMaxNotes);
+    out.notes.push_back("what else is to be said is left out");
+  }
+  out.windows = estimation.windows();
+  out.instants = estimation.pipeline().counters().sample_sets;
+  out.damaged_bytes = survey.damaged_bytes();
+  out.measured_s = survey.any_sample() ? survey.measured_seconds() : 0;
+  if (!survey.problems().empty())
+    out.problem = survey.problems().front();
+  else if (!history.close())
+    out.problem = path + ": " + history.error();
+  return out;
+}
+
+constexpr const char* kMeans =
+    "SELECT name, unit, sum(observable), sum(observable * mean) / sum(observable),"
+    " sqrt(sum(observable * std_error * std_error) / sum(observable)), min(min), max(max)"
+    " FROM summary JOIN parameter ON parameter.id = parameter"
+    " WHERE period_s = (SELECT min(period_s) FROM period) GROUP BY parameter ORDER BY parameter";
+
+/// Every parameter of a database with the tables of a history, over all of its shortest periods:
+/// by name its unit, in how many windows it was observable, mean, standard error (root mean square
+/// of the windows' own), least and largest value. Null when the database cannot be read.
+nlohmann::ordered_json parameter_means(const std::string& database) {
+  daemon::SqliteFile file;
+  if (!file.open_to_read(database)) return nullptr;
+  daemon::SqliteStatement all = file.prepare(kMeans);
+  nlohmann::ordered_json out = nlohmann::ordered_json::object();
+  while (all.row())
+    out[all.text(0)] = {{"unit", all.text(1)},   {"observable", all.integer(2)},
+                        {"mean", all.number(3)}, {"std_error", all.number(4)},
+                        {"min", all.number(5)},  {"max", all.number(6)}};
+  return file.failed() ? nlohmann::ordered_json() : out;
+}
 
 using Json = nlohmann::ordered_json;
 

@@ -5,9 +5,18 @@
 #include <string>
 #include <vector>
 
-#include "fleet/hub/stream_table.h"
-
 namespace framewatch::fleet {
+
+/// A stream of the hub, or a consumer of one, as it should be.
+struct HubPart {
+  std::string stream;
+  std::string consumer;  ///< empty: the stream itself
+  std::string config;    ///< JSON of the JetStream API: every value that matters
+};
+
+/// What the hub consists of (docs/fleet.md), each stream before its consumers. Sizes are for so
+/// many buildings.
+std::vector<HubPart> hub_parts(int replicas, int buildings);
 
 /// Asks the hub; empty, with the reason, when nothing answers.
 using AskHub = std::function<std::optional<std::string>(

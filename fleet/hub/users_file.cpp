@@ -1,6 +1,7 @@
 #include "fleet/hub/users_file.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <sstream>
 
@@ -8,7 +9,7 @@
 
 #include "daemon/base/file_digest.h"
 #include "drivers/files/input_file.h"
-#include "fleet/hub/replace_file.h"
+#include "drivers/files/partial_file.h"
 #include "fleet/message/subject.h"
 
 namespace framewatch::fleet {
@@ -98,6 +99,17 @@ std::string UsersFile::write() const {
   if (problem.empty())
     problem = replace_file((std::filesystem::path(directory_) / kList).string(), list);
   return problem;
+}
+
+std::string replace_file(const std::string& path, const std::string& text) {
+  drivers::PartialFile file;
+  if (!file.open(path)) return fmt::format("{}: {}", path, file.error());
+  std::FILE* stream = file.stream();
+  const bool written = stream != nullptr &&
+                       std::fwrite(text.data(), 1, text.size(), stream) == text.size() &&
+                       std::fclose(stream) == 0;
+  if (!written || !file.commit()) return fmt::format("{}: {}", path, file.error());
+  return {};
 }
 
 }  // namespace framewatch::fleet

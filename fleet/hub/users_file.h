@@ -34,4 +34,7 @@ std::string problem_of_building(const std::string& name);
 /// users.conf: what each certificate may do (docs/fleet.md).
 std::string users_text(const std::vector<std::string>& buildings);
 
+/// Replaces a file as a whole. Empty, or "PATH: why not".
+std::string replace_file(const std::string& path, const std::string& text);
+
 }  // namespace framewatch::fleet

@@ -6,20 +6,97 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <random>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include <fmt/core.h>
+#include <nats/nats.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/base/clocks.h"
 #include "drivers/files/descriptor.h"
-#include "fleet/link/certificate_age.h"
-#include "fleet/link/nats_objects.h"
+#include "fleet/message/message.h"
 
 namespace framewatch::fleet {
+
+/// Destroys an object of the NATS library together with its owner.
+template <class Type, void (*destroy)(Type*)>
+struct NatsDestroyer {
+  void operator()(Type* object) const { destroy(object); }
+};
+using NatsOptions = std::unique_ptr<natsOptions, NatsDestroyer<natsOptions, natsOptions_Destroy>>;
+using NatsConnection =
+    std::unique_ptr<natsConnection, NatsDestroyer<natsConnection, natsConnection_Destroy>>;
+using NatsSubscription =
+    std::unique_ptr<natsSubscription, NatsDestroyer<natsSubscription, natsSubscription_Destroy>>;
+using NatsMessage = std::unique_ptr<natsMsg, NatsDestroyer<natsMsg, natsMsg_Destroy>>;
+
 namespace {
+
+/// A message of the library as ours, and the other way round; null for want of memory.
+Message message_of(natsMsg* from) {
+  Message out;
+  out.subject = natsMsg_GetSubject(from);
+  if (const char* reply = natsMsg_GetReply(from)) out.reply = reply;
+  if (const int size = natsMsg_GetDataLength(from); size > 0) {
+    const char* data = natsMsg_GetData(from);
+    out.bytes.assign(data, data + size);
+  }
+  const char** names = nullptr;
+  int count = 0;
+  if (natsMsgHeader_Keys(from, &names, &count) == NATS_OK) {
+    for (int i = 0; i < count; ++i)
+      if (const char* value = nullptr; natsMsgHeader_Get(from, names[i], &value) == NATS_OK)
+        out.headers[names[i]] = value;
+    std::free(names);  // NOLINT: the library's rule
+  }
+  return out;
+}
+
+NatsMessage nats_message(const Message& from) {
+  natsMsg* made = nullptr;
+  if (natsMsg_Create(&made, from.subject.c_str(), from.reply.empty() ? nullptr : from.reply.c_str(),
+                     reinterpret_cast<const char*>(from.bytes.data()),
+                     static_cast<int>(from.bytes.size())) != NATS_OK)
+    return nullptr;
+  NatsMessage out(made);
+  for (const auto& [name, value] : from.headers)
+    if (natsMsgHeader_Set(out.get(), name.c_str(), value.c_str()) != NATS_OK) return nullptr;
+  return out;
+}
+
+/// What the library says of a failure on this thread.
+std::string last_error(natsStatus status) {
+  const char* detail = nats_GetLastError(nullptr);
+  const std::string text = natsStatus_GetText(status);
+  return detail == nullptr || *detail == '\0' ? text : fmt::format("{}: {}", text, detail);
+}
+
+constexpr const char* kOpenssl = "/usr/bin/openssl";
+constexpr std::chrono::milliseconds kPause{2};
+constexpr int kMaxLooks = 1000;
+
+/// "FILE expired: ..." when the certificate (PEM) is over, by openssl(1) and the host's clock; else
+/// empty, also when it cannot be read. A hub that refuses it says nothing that reaches us.
+std::string expired(const std::string& certificate) {
+  std::string error;
+  auto process = daemon::ChildProcess::start(
+      {"x509", "-in", certificate, "-noout", "-out", "/dev/null", "-checkend", "0"}, error,
+      kOpenssl, "/dev/null");
+  for (int i = 0; process && i < kMaxLooks; ++i) {
+    if (const std::optional<int> status = process->ended())
+      return *status == 1 ? fmt::format("{} expired, or the host's clock is wrong", certificate)
+                          : "";
+    std::this_thread::sleep_for(kPause);
+  }
+  return {};
+}
 
 constexpr std::int64_t kMinWait_ms = 250, kMaxWait_ms = 5000;
 // A line that is dead without a word shows within 12 s; oftener would cost more than what is sent.

@@ -7,7 +7,7 @@
 #include "fleet/sds/sds_archive.h"
 #include "fleet/store/database.h"
 #include "fleet/store/fleet_schema.h"
-#include "fleet/view/fetched_samples.h"
+#include "fleet/view/building_view.h"
 #include "fleet/view/rows.h"
 
 namespace framewatch::fleet {

@@ -9,7 +9,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/page/web/web_admission.h"
 #include "drivers/files/number_text.h"
-#include "fleet/hub/replace_file.h"
+#include "fleet/hub/users_file.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include <framewatch/event_t.hpp>
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/summary_t.hpp>
 
 #include "daemon/base/sqlite_file.h"
 #include "fleet/message/key.h"
@@ -62,5 +64,17 @@ class Outbox {
 
 /// Ranges in order of time, those that touch made one.
 std::vector<TimeRange> united(std::vector<TimeRange> ranges);
+
+/// How many events and closed periods the history has of each day of the 30 before `newest_us`, as
+/// JSON: {"format": "framewatch.inventory/1", "days": [{"day": "2026-11-24", "from_us": ...,
+/// "events": 3, "periods": {"600": 144}}]}. Days without any are left out; periods shorter than
+/// `least_s` too. Empty when the history cannot be read.
+std::string inventory(daemon::SqliteFile& history, std::int64_t newest_us, std::int64_t least_s);
+
+/// A period of a history as a message. Parameters are in the order of `table` where that is of the
+/// configuration of the period's time, else in that of the history. Empty when the period is not
+/// there or cannot be read.
+std::optional<summary_t> summary_message(daemon::SqliteFile& history, const SummaryKey& key,
+                                         const std::optional<parameter_table_t>& table);
 
 }  // namespace framewatch::fleet

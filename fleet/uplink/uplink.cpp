@@ -11,9 +11,8 @@
 #include "drivers/files/encoded.h"
 #include "drivers/files/number_text.h"
 #include "fleet/message/subject.h"
-#include "fleet/uplink/inventory.h"
-#include "fleet/uplink/summary_message.h"
-#include "fleet/uplink/verdict.h"
+#include "fleet/uplink/outbox.h"
+#include "fleet/uplink/send_window.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -13,7 +13,6 @@
 
 #include "daemon/base/clocks.h"
 #include "fleet/view/comparison.h"
-#include "fleet/view/period_reader.h"
 #include "fleet/view/rows.h"
 
 namespace framewatch::fleet {

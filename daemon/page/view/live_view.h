@@ -16,7 +16,7 @@
 #include "daemon/monitor/estimation/message_sink.h"
 #include "daemon/monitor/service/latest_messages.h"
 #include "daemon/page/findings/answers.h"
-#include "daemon/page/findings/model_fit.h"
+#include "daemon/page/findings/finding.h"
 #include "daemon/page/findings/shaking.h"
 #include "daemon/page/view/event_ring.h"
 #include "daemon/page/view/motion_rows.h"

@@ -1,4 +1,4 @@
-#include "fleet/archive/archive_logs.h"
+#include "fleet/archive/manifest_command.h"
 
 #include <filesystem>
 

@@ -1,4 +1,4 @@
-#include "fleet/uplink/verdict.h"
+#include "fleet/uplink/send_window.h"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "fleet/view/building_state.h"
+#include "fleet/view/overview.h"
 
 #include <utility>
 #include <vector>

@@ -15,9 +15,7 @@
 #include "fleet/store/fleet_store.h"
 #include "fleet/view/building_view.h"
 #include "fleet/view/earthquake_view.h"
-#include "fleet/view/fetched_samples.h"
 #include "fleet/view/overview.h"
-#include "fleet/view/series.h"
 #include "tests/fleet/support/own_postgres.h"
 
 namespace framewatch::fleet {

@@ -1,4 +1,4 @@
-#include "fleet/worker/missing_days.h"
+#include "fleet/worker/worker_command.h"
 
 #include <cstdlib>
 #include <string>

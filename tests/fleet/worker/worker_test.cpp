@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "fleet/worker/flood_gate.h"
 #include "tests/fleet/worker/worker_fixture.h"
 
 namespace framewatch::fleet {

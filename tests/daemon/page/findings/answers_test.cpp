@@ -8,7 +8,7 @@
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_words.h"
 #include "daemon/monitor/events/recovery_words.h"
-#include "daemon/page/findings/model_fit.h"
+#include "daemon/page/findings/finding.h"
 #include "tests/support/config_fixture.h"
 
 namespace framewatch::daemon {
