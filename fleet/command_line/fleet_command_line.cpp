@@ -1,10 +1,103 @@
 #include "fleet/command_line/fleet_command_line.h"
 
+#include <CLI/CLI.hpp>
+
 #include "daemon/command_line/command_line.h"
 #include "daemon/command_line/command_list.h"
+#include "fleet/archive/manifest_command.h"
+#include "fleet/archive/task_command.h"
 #include "fleet/command_line/fleet_commands.h"
+#include "fleet/uplink/uplink_command.h"
+#include "fleet/worker/worker_command.h"
 
 namespace framewatch::fleet {
+
+void add_uplink(daemon::CommandList& commands) {
+  UplinkArguments& arguments = commands.arguments<UplinkArguments>();
+  CLI::App* command = commands.add(
+      "uplink",
+      "beside `framewatch run`: sends what the history holds to the hub of many buildings");
+  command->footer(
+      "CONFIG has the sections [fleet] and [history]. What the hub has not acknowledged waits in\n"
+      "the history, however long there is no hub; `framewatch run` knows nothing of all this.\n"
+      "Exit status: 0 stopped, 1 no LCM, 2 bad usage, configuration or certificate.\n"
+      "Example: framewatch uplink /etc/framewatch/building.toml");
+  daemon::add_config(commands, command, arguments.config);
+  daemon::add_url(command, arguments.url);
+  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  commands.set_action(command, [&arguments] { return uplink_command(arguments); });
+}
+
+void add_worker(daemon::CommandList& commands) {
+  WorkerArguments& arguments = commands.arguments<WorkerArguments>();
+  CLI::App* command =
+      commands.add("worker", "at the hub: what buildings say, into PostgreSQL; any number of them");
+  command->footer(
+      "Makes the tables, and waits for hub and database as long as they are away: what is not\n"
+      "stored is not acknowledged. DIR has worker.pem, worker.key and ca.pem (fleet authority).\n"
+      "Exit status: 0 stopped, 2 bad usage or certificates.\n"
+      "Example: framewatch fleet worker --hub tls://hub1.example.org:4222 --database "
+      "postgresql://fleet@db/fleet");
+  command->add_option("--hub", arguments.hubs, "server, tls://HOST:PORT; once for each")
+      ->required();
+  command->add_option("--dir", arguments.directory, "folder of the certificates")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command
+      ->add_option("--database", arguments.database,
+                   "of PostgreSQL: a connection string or URI; the environment (PGHOST, ...) says\n"
+                   "the rest")
+      ->required();
+  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  commands.set_action(command, [&arguments] { return worker_command(arguments); });
+}
+
+void add_manifest(daemon::CommandList& commands) {
+  ManifestArguments& arguments = commands.arguments<ManifestArguments>();
+  CLI::App* command = commands.add(
+      "manifest", "an archive of raw logs as tasks, one a line, for `framewatch fleet task`");
+  command->footer(
+      "Each line: number, key, configuration, output, three times (microseconds), logs, with tabs\n"
+      "between them. Exit status: 0 done, 2 bad usage, configuration or logs.\n"
+      "Examples:\n"
+      "  framewatch fleet manifest building.toml out history > manifest.tsv\n"
+      "  framewatch fleet manifest building.toml out logs/*.lcmlog.zst --hours 24 > manifest.tsv");
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  command->add_option("OUT", arguments.folder, "folder for what the tasks write; made if missing")
+      ->required();
+  command
+      ->add_option("LOG", arguments.places,
+                   "raw logs of a history, directories of histories, or LCM event logs")
+      ->required();
+  command->add_option("--hours", arguments.hours, "of sensor time that a task stores")
+      ->check(CLI::Range(1, 8784))
+      ->capture_default_str();
+  command
+      ->add_option("--warm-up", arguments.warm_up_s,
+                   "seconds of samples before it, in which filters and tuning settle")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  commands.set_action(command, [&arguments] { return manifest(arguments); });
+}
+
+void add_task(daemon::CommandList& commands) {
+  TaskArguments& arguments = commands.arguments<TaskArguments>();
+  CLI::App* command = commands.add(
+      "task", "tasks of a manifest: logs in, summaries out, once, however often it is asked");
+  command->footer(
+      "OUT/TIME.sqlite has the tables of a history, OUT/TIME.json the line that is printed. What "
+      "is\n"
+      "done is not done again: the key in that line says so. Exit status: 0 done, 1 one failed, 2\n"
+      "bad usage or manifest.\n"
+      "Examples:\n"
+      "  framewatch fleet task manifest.tsv 1 2 3\n"
+      "  parallel --joblog run.log --resume-failed framewatch fleet task manifest.tsv {} ::: \\\n"
+      "    $(seq $(wc -l < manifest.tsv))");
+  command->add_option("MANIFEST", arguments.manifest, "file that `framewatch fleet manifest` wrote")
+      ->required();
+  command->add_option("N", arguments.numbers, "numbers of tasks")->required();
+  commands.set_action(command, [&arguments] { return task(arguments); });
+}
 
 int run_fleet_command_line(int argc, const char* const* argv) {
   const daemon::Program program{"framewatch fleet",

@@ -10,7 +10,6 @@
 #include <fmt/core.h>
 
 #include "daemon/base/served_file.h"
-#include "daemon/page/web/connection_guard.h"
 #include "daemon/page/web/web_admission.h"
 #include "daemon/page/web/web_answer.h"
 #include "daemon/page/web/web_files.h"

@@ -1,12 +1,43 @@
 #include "daemon/page/metrics/metric_families.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
 
 #include <prometheus/text_serializer.h>
 
+#include <framewatch/action_status_t.hpp>
+#include <framewatch/can_status_t.hpp>
+#include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/watch_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
 #include "daemon/base/printable.h"
+#include "daemon/monitor/events/event_words.h"
 
 namespace framewatch::daemon {
+namespace {
+
+constexpr int kValid = 1;
+
+/// Of parameter_table_t::kind.
+constexpr std::array<std::pair<const char*, const char*>, 4> kKinds = {{
+    {"frame_stiffness_newtons_per_meter", "Stiffness of a frame in a story."},
+    {"panel_stiffness_newtons_per_radian_meter", "Shear stiffness of a floor panel."},
+    {"frame_damping_newton_seconds_per_meter", "Damping of a frame in a story."},
+    {"panel_damping_newton_seconds_per_radian_meter", "Damping of a floor panel."},
+}};
+
+MetricFamilies::Labels labels_of(const parameter_table_t& table, std::size_t p) {
+  return {{"parameter", table.name[p]}, {"story", std::to_string(table.story[p])}};
+}
+
+}  // namespace
 
 MetricFamilies& MetricFamilies::family(const char* name, const char* help,
                                        prometheus::MetricType type) {
@@ -124,6 +155,208 @@ void add_status(MetricFamilies& out, const status_t& s) {
   out.gauge("channel_noise_mps2_per_root_hertz",
             "Noise density reckoned with, m/s^2/sqrt(Hz); none while it is not known.")
       .each("channel", s.name, s.noise_mps2_per_rthz);
+}
+
+void add_estimate(MetricFamilies& out, const parameter_table_t& table, const window_estimate_t& e) {
+  if (table.name.size() != e.value.size()) return;
+  const auto labels = [&](std::size_t p) { return labels_of(table, p); };
+  const auto valid = [&](std::size_t p) { return e.reason[p] == 0 && std::isfinite(e.value[p]); };
+  out.gauge("window_valid", "1: the newest window has values; 0: it is warming up or quiet.")
+      .value(e.status == kValid ? 1 : 0);
+  if (std::isfinite(e.residual_ratio))
+    out.gauge("window_residual_ratio", "What the model leaves of the response, over the response.")
+        .value(e.residual_ratio);
+  for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+    out.gauge(kKinds[kind].first, kKinds[kind].second);
+    for (std::size_t p = 0; p < e.value.size(); ++p)
+      if (valid(p) && table.kind[p] == static_cast<int>(kind)) out.value(e.value[p], labels(p));
+  }
+  out.gauge("parameter_valid", "1: the newest window shows it; without, there is no value above.");
+  for (std::size_t p = 0; p < e.value.size(); ++p) out.value(valid(p) ? 1 : 0, labels(p));
+  out.gauge("parameter_standard_error_ratio", "Standard error over the value.");
+  for (std::size_t p = 0; p < e.value.size(); ++p)
+    if (valid(p)) out.value(e.std_error[p] / e.value[p], labels(p));
+  out.gauge("parameter_design_ratio", "Value over the design value the filters are tuned to.");
+  for (std::size_t p = 0; p < e.value.size(); ++p)
+    if (valid(p) && table.design[p] > 0) out.value(e.value[p] / table.design[p], labels(p));
+  out.gauge("parameter_excitation_ratio", "Energy of the regressor over its noise energy.");
+  for (std::size_t p = 0; p < e.value.size(); ++p)
+    if (std::isfinite(e.snr[p])) out.value(static_cast<double>(e.snr[p]), labels(p));
+}
+
+void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_t& w) {
+  if (table.name.size() != w.watched.size()) return;
+  const auto each = [&](const char* name, const char* help, const auto& value) {
+    out.gauge(name, help);
+    for (std::size_t p = 0; p < w.watched.size(); ++p)
+      if (std::isfinite(value(p))) out.value(value(p), labels_of(table, p));
+  };
+  each("baseline", "What changes are judged against, in the parameter's unit.",
+       [&](std::size_t p) { return w.baseline[p]; });
+  each("baseline_standard_error_ratio", "Standard error of that over the value.",
+       [&](std::size_t p) { return w.baseline_std_error[p] / w.baseline[p]; });
+  each("quiet_baseline", "The same of weak motion.",
+       [&](std::size_t p) { return w.quiet_baseline[p]; });
+  each("quiet_baseline_standard_error_ratio", "Standard error of that over the value.",
+       [&](std::size_t p) { return w.quiet_std_error[p] / w.quiet_baseline[p]; });
+  each("quiet_baseline_per_degree_celsius_ratio", "How the baseline of weak motion changes.",
+       [&](std::size_t p) { return w.per_degc[p]; });
+  each("quiet_baseline_per_log_amplitude_ratio", "The same with the logarithm of the amplitude.",
+       [&](std::size_t p) { return w.per_log_amplitude[p]; });
+  if (w.long_window_s > 0)
+    out.gauge("quiet_baseline_learned_ratio", "Part of what its learning takes.")
+        .value(w.quiet_learned_ratio);
+  if (std::isfinite(w.temperature_degc))
+    out.gauge("temperature_celsius", "What the thermometer says.").value(w.temperature_degc);
+}
+
+void add_gap(MetricFamilies& out, const gap_t& g) {
+  out.gauge("gap_ratio", "Simulation against measurement, NRMSE over the last window.")
+      .value(g.overall_nrmse);
+  if (std::isfinite(g.noise_floor))
+    out.gauge("gap_noise_floor_ratio", "The least it can be with these sensors.")
+        .value(g.noise_floor);
+  out.gauge("channel_gap_ratio", "The same of one channel.").each("channel", g.name, g.nrmse);
+}
+
+void add_can(MetricFamilies& out, const can_status_t& s) {
+  out.gauge("can_bus_state", "1 for the state the bus is in, 0 for the others.");
+  constexpr std::array kStates = {"gone", "active", "warning", "passive", "off"};  // from -1
+  for (std::size_t b = 0; b < s.interface.size(); ++b)
+    for (std::size_t state = 0; state < kStates.size(); ++state)
+      out.value(s.state[b] + 1 == static_cast<int>(state) ? 1 : 0,
+                {{"interface", s.interface[b]}, {"state", kStates[state]}});
+  out.gauge("can_frames_per_second", "All frames on the bus.")
+      .each("interface", s.interface, s.frames_hz);
+  out.gauge("can_load_ratio", "Share of the time the bus is taken, at most.")
+      .each("interface", s.interface, s.load);
+  out.gauge("can_expected_load_ratio", "The same, of the configured nodes.")
+      .each("interface", s.interface, s.expected_load);
+  out.counter("can_error_frames_total", "Error frames.")
+      .each("interface", s.interface, s.error_frames);
+  out.counter("can_bus_off_total", "Times the bus was off.")
+      .each("interface", s.interface, s.bus_off);
+  out.counter("can_bus_errors_total", "Protocol, acknowledgement and transceiver errors.")
+      .each("interface", s.interface, s.bus_errors);
+  out.counter("can_overflow_total", "Overflows of the controller's receive buffer.")
+      .each("interface", s.interface, s.overflow);
+  out.counter("can_dropped_frames_total", "Frames lost to full receive queues of the host.")
+      .value(static_cast<double>(s.dropped));
+}
+
+void add_uplink(MetricFamilies& out, const uplink_status_t& s) {
+  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
+  out.gauge("uplink_connected", "1: a connection to a hub stands.").value(s.connected);
+  out.gauge("uplink_acknowledged_timestamp_seconds",
+            "Host clock of the newest acknowledgement of the hub, Unix time; 0: none yet.")
+      .value(1e-6 * number(s.acknowledged_us));
+  out.gauge("uplink_waiting", "What the hub has not acknowledged, by kind.")
+      .value(number(s.events_waiting), {{"kind", "event"}})
+      .value(number(s.summaries_waiting), {{"kind", "summary"}})
+      .value(number(s.pieces_waiting), {{"kind", "raw"}});
+  out.counter("uplink_acknowledged_total", "Messages that the hub acknowledged.")
+      .value(number(s.acknowledged));
+  out.counter("uplink_sent_again_total", "Messages sent again because nothing came back.")
+      .value(number(s.sent_again));
+  out.counter("uplink_refused_total", "Messages that the hub refused; they are kept.")
+      .value(number(s.refused));
+  out.counter("uplink_sent_bytes_total", "Bytes given to the network.").value(number(s.sent_bytes));
+  out.counter("uplink_commands_total", "Commands of the hub.")
+      .value(number(s.commands_obeyed), {{"result", "obeyed"}})
+      .value(number(s.commands_refused), {{"result", "refused"}});
+  out.gauge("uplink_trouble", "1: history or outbox cannot be read or written.")
+      .value(s.store_trouble.empty() ? 0 : 1);
+  out.gauge("uplink_resident_memory_bytes", "Memory of framewatch uplink.")
+      .value(number(s.resident_bytes));
+  out.counter("uplink_cpu_seconds_total", "Processor time of framewatch uplink.").value(s.cpu_s);
+}
+
+void add_history(MetricFamilies& out, const history_status_t& s) {
+  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
+  out.counter("history_samples_total", "Raw samples given to the history.")
+      .value(number(s.raw_samples));
+  out.counter("history_dropped_total", "What the disk did not take, by kind.")
+      .value(number(s.raw_dropped), {{"kind", "raw"}})
+      .value(number(s.summary_dropped), {{"kind", "summary"}});
+  out.counter("history_written_bytes_total", "Raw samples written, before compression.")
+      .value(number(s.raw_bytes));
+  out.gauge("history_queue_bytes", "Raw samples that wait for the disk.")
+      .value(number(s.raw_queue_bytes));
+  out.gauge("history_trouble", "1: the disk does not take it.")
+      .value(s.raw_trouble.empty() ? 0 : 1, {{"kind", "raw"}})
+      .value(s.summary_trouble.empty() ? 0 : 1, {{"kind", "summary"}});
+  out.gauge("history_stored_until_timestamp_seconds",
+            "Windows that end before this sensor time are in the database.")
+      .value(1e-6 * number(s.summary_until_us));
+  out.gauge("history_stored_bytes", "Everything in the history's directory.")
+      .value(number(s.stored_bytes));
+  if (s.disk_free_bytes >= 0)
+    out.gauge("history_disk_free_bytes", "Free where the history goes.")
+        .value(number(s.disk_free_bytes));
+}
+
+void add_actions(MetricFamilies& out, const action_status_t& s) {
+  out.counter("action_events_total", "Events that somebody was told, and that nobody was.")
+      .each("way", s.name, s.told, {{"result", "told"}})
+      .each("way", s.name, s.lost, {{"result", "lost"}});
+  out.gauge("action_waiting_events", "Events that are to be told.").each("way", s.name, s.waiting);
+  std::vector<int> trouble;
+  for (const std::string& why : s.trouble) trouble.push_back(why.empty() ? 0 : 1);
+  out.gauge("action_trouble", "1: the newest try to tell somebody failed.")
+      .each("way", s.name, trouble);
+}
+
+void add_reception(MetricFamilies& out, const reception_t& r) {
+  out.counter("messages_unused_total", "LCM datagrams and messages that were dropped, by reason.");
+  for (const auto& [reason, count] : {std::pair{"elsewhere", r.datagrams_elsewhere},
+                                      std::pair{"malformed", r.datagrams_malformed},
+                                      std::pair{"overflowed", r.datagrams_overflowed},
+                                      std::pair{"unfinished", r.messages_unfinished},
+                                      std::pair{"queue_full", r.messages_dropped}})
+    out.value(static_cast<double>(count), {{"reason", reason}});
+}
+
+/// The records of changes that have a number.
+void add_changes(MetricFamilies& out, const std::vector<event_t>& raised) {
+  std::vector<const event_t*> sized;
+  for (const event_t& e : raised)
+    if (e.kind == "stiffness_change" && std::isfinite(e.value) && e.std_error > 0)
+      sized.push_back(&e);
+  if (sized.empty()) return;
+  out.gauge("stiffness_change_ratio",
+            "Size of a change that is raised, relative to the baseline; negative: a loss.");
+  for (const event_t* e : sized) out.value(e->value / 100, {{"parameter", e->place}});
+  out.gauge("stiffness_change_error_ratio", "Its standard error.");
+  for (const event_t* e : sized) out.value(e->std_error / 100, {{"parameter", e->place}});
+}
+
+void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
+  std::map<std::pair<std::string, std::string>, int> counts;
+  // Always there, so that an alert sees it rise from nothing.
+  for (const char* severity : kSeverities) {
+    counts[{"stiffness_change", severity}] = 0;
+    counts[{"gap", severity}] = 0;
+    counts[{"strong_motion", severity}] = 0;
+    counts[{"two_senders", severity}] = 0;
+    counts[{"channel_table", severity}] = 0;
+  }
+  for (const event_t& e : raised)
+    if (e.severity >= 0 && e.severity < static_cast<int>(kSeverities.size()))
+      ++counts[{e.kind, kSeverities[static_cast<std::size_t>(e.severity)]}];
+  out.gauge("events_raised", "Events raised and not cleared.");
+  for (const auto& [of, count] : counts)
+    out.value(count, {{"kind", of.first}, {"severity", of.second}});
+  add_changes(out, raised);
+}
+
+void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report) {
+  out.gauge("event_report_color", "1 for the verdict of the newest report after strong motion.");
+  for (const EventColor color : {EventColor::green, EventColor::yellow, EventColor::red})
+    out.value(report && report->color == color ? 1 : 0, {{"color", color_word(color)}});
+  if (report)
+    out.gauge("event_report_timestamp_seconds",
+              "Sensor time at which the strong motion of the newest report ended.")
+        .value(1e-6 * static_cast<double>(report->end_us));
 }
 
 }  // namespace framewatch::daemon

@@ -24,7 +24,6 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/monitor/event_report/event_report_folder.h"
-#include "daemon/page/metrics/page_use.h"
 
 namespace framewatch::daemon {
 
@@ -77,6 +76,5 @@ void add_uplink(MetricFamilies& out, const uplink_status_t& uplink);
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
 /// report: the newest of [event_report], if there is one.
 void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report);
-void add_page_use(MetricFamilies& out, const PageUse& use);
 
 }  // namespace framewatch::daemon

@@ -8,6 +8,20 @@ namespace {
 
 constexpr const char* kStiffnessChange = "stiffness_change";
 
+void add_page_use(MetricFamilies& out, const PageUse& use) {
+  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
+  out.gauge("serve_viewers", "Open pages of framewatch serve.").value(use.viewers);
+  out.gauge("serve_connections", "Connections that are not viewers, by what they wait for.")
+      .value(use.waiting, {{"state", "request"}})
+      .value(use.answering, {{"state", "answer"}});
+  out.counter("serve_connections_ended_total", "Connections ended by framewatch serve, by reason.")
+      .value(number(use.late_requests), {{"reason", "late_request"}})
+      .value(number(use.late_answers), {{"reason", "late_answer"}})
+      .value(number(use.crowded_out), {{"reason", "crowded"}});
+  out.counter("serve_viewers_refused_total", "Viewers for whom there was no place.")
+      .value(number(use.viewers_refused));
+}
+
 }  // namespace
 
 void Metrics::message(const std::string& channel, const void* data, std::size_t size,

@@ -19,7 +19,6 @@
 #include "daemon/page/findings/finding.h"
 #include "daemon/page/findings/shaking.h"
 #include "daemon/page/view/event_ring.h"
-#include "daemon/page/view/motion_rows.h"
 #include "daemon/page/view/page_alarms.h"
 #include "daemon/page/view/page_commands.h"
 #include "daemon/page/view/page_history.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/base/clocks.h"
-#include "daemon/page/metrics/page_use.h"
+#include "daemon/page/metrics/metrics.h"
 
 namespace framewatch::daemon {
 

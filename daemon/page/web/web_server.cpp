@@ -16,10 +16,8 @@
 
 #include "daemon/base/served_file.h"
 #include "daemon/page/view/live_view.h"
-#include "daemon/page/web/connection_guard.h"
 #include "daemon/page/web/web_admission.h"
 #include "daemon/page/web/web_answer.h"
-#include "daemon/page/web/web_event_reports.h"
 #include "daemon/page/web/web_files.h"
 #include "daemon/page/web/web_sessions.h"
 #include "daemon/page/web/web_socket.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "daemon/page/web/web_settings.h"
+#include "daemon/page/web/web_admission.h"
 
 namespace framewatch::daemon {
 

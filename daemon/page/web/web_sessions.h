@@ -15,4 +15,11 @@ std::string sessions_json(const std::string& folder);
 /// for any other path.
 std::optional<WebFile> session_document(const std::string& folder, const std::string& path);
 
+/// The newest 50 reports of [event_report] in a folder, newest first: [{"name", "verdict",
+/// "reason", "start_us", "end_us"}], JSON.
+std::string event_reports_json(const std::string& folder);
+
+/// A report by "NAME.html" or "NAME.json"; empty for any other path.
+std::optional<WebFile> event_report_document(const std::string& folder, const std::string& path);
+
 }  // namespace framewatch::daemon

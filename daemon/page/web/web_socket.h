@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
 #include <string>
 
+#include "daemon/page/metrics/metrics.h"
+#include "daemon/page/web/web_admission.h"
 #include "daemon/page/web/web_connections.h"
-#include "daemon/page/web/web_settings.h"
 
 namespace framewatch::daemon {
 
@@ -22,5 +26,36 @@ std::string page_address(const WebSettings& settings, int port, const std::strin
 
 /// 32 hexadecimal digits from the operating system's random numbers.
 std::string random_token();
+
+/// Ends the connections of the page that must end (WebConnections), and says so: one log line a
+/// minute. A socket may be given here between its opening and closed(); then any thread may call.
+class ConnectionGuard {
+ public:
+  explicit ConnectionGuard(const ConnectionLimits& limits) : connections_(limits) {}
+
+  void opened(int socket);
+  /// The request has come whole.
+  void asked(int socket);
+  /// An answer of so many bytes is held for it.
+  void answered(int socket, std::size_t bytes);
+  /// It becomes a viewer of the stream of events. False when there is no place.
+  [[nodiscard]] bool watches(int socket);
+  /// The socket is about to be closed.
+  void closed(int socket);
+  /// Ends what is overdue; to be called at least once a second.
+  void sweep();
+
+  PageUse use() const;
+
+ private:
+  void end(const std::vector<WebConnections::Ending>& endings);
+  void report(std::int64_t now_us);
+
+  mutable std::mutex mutex_;  ///< guards what is below
+  WebConnections connections_;
+  std::string last_address_;
+  PageUse told_;  ///< its counters, when the last line was logged
+  std::int64_t next_line_us_ = INT64_MIN;
+};
 
 }  // namespace framewatch::daemon

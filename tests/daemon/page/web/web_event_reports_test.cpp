@@ -1,4 +1,4 @@
-#include "daemon/page/web/web_event_reports.h"
+#include "daemon/page/web/web_sessions.h"
 
 #include <filesystem>
 #include <string>

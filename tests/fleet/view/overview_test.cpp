@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace framewatch::fleet {
-namespace building_state_test {
+namespace overview_test {
 
 constexpr std::int64_t kNow_us = 1'795'305'600'000'000;
 constexpr std::int64_t kAlive_us = kNow_us - 60'000'000;
@@ -76,5 +76,5 @@ TEST(BuildingState, EventsComeChangeAndGo) {
   EXPECT_EQ(raised[0].id, 2);
 }
 
-}  // namespace building_state_test
+}  // namespace overview_test
 }  // namespace framewatch::fleet

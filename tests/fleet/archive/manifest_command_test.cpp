@@ -12,7 +12,7 @@
 #include "tests/support/temporary.h"
 
 namespace framewatch::fleet {
-namespace archive_logs_test {
+namespace manifest_command_test {
 
 using daemon::kSecond_us;
 
@@ -131,5 +131,5 @@ TEST(ArchiveLogs, EveryProblemIsToldAtOnce) {
   EXPECT_NE(problems[3].find("a tab"), std::string::npos);
 }
 
-}  // namespace archive_logs_test
+}  // namespace manifest_command_test
 }  // namespace framewatch::fleet
