@@ -69,7 +69,7 @@ void LiveView::restore(const StoredHistory& stored, std::int64_t now_us) {
       history_.motion(rows, flush, kFlushesPerSecond);
     }
   }
-  // A clock that does not count from 1970 does not say how long ago that was.
+  // The age of the samples is unknown when their clock does not count from 1970.
   motion_at_ =
       last_us > kYear2000_us ? -std::max<std::int64_t>(0, now_us - last_us) / kFlush_us : 0;
 }
@@ -101,7 +101,7 @@ void LiveView::push_alarms(const std::vector<std::string>& alarms) {
   for (const std::string& alarm : alarms) ring_.push("alarm", alarm);
 }
 
-/// Pushes an event that a viewer who joins later gets at once.
+/// Pushes an event and keeps it for viewers that join later.
 void LiveView::keep(const std::string& name, std::string json) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ring_.push(name, json);
@@ -165,13 +165,13 @@ void LiveView::parameters(const parameter_table_t& table) {
   if (table.name == parameters_) return;
   parameters_ = table.name;
   watch_.reset();
-  // An estimator of another building's configuration is shown, not watched.
+  // Estimates for another building's configuration are shown but not watched.
   same_parameters_ = parameters_ == parameter_names(config_);
   if (same_parameters_) watch_.emplace(config_, std::max<std::int64_t>(1, table.time_us));
 }
 
 void LiveView::estimate(int window, const window_estimate_t& found) {
-  // Arithmetic on the times of others stays exact.
+  // Rejects times that would overflow in later arithmetic.
   if (found.window_end_us > drivers::kLatestTime_us ||
       found.window_end_us < -drivers::kLatestTime_us)
     return;
@@ -263,8 +263,7 @@ Known LiveView::known() const {
   return out;
 }
 
-/// An event that a viewer who joins later gets at once, if it differs from the one before. The
-/// caller holds the mutex.
+/// Does as keep() if the event differs from the previous one. The caller holds the mutex.
 void LiveView::push_if_new(const std::string& name, const std::string& json) {
   if (json != kept_[name]) ring_.push(name, json);
   kept_[name] = json;

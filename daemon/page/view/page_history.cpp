@@ -126,7 +126,7 @@ void PageHistory::keep_last(const window_estimate_t& e) {
   last_.boxplot_windows = e.boxplot_windows;
   last_.boxplots = e.boxplots;
   for (std::size_t p = 0; p < n; ++p) {
-    if (!now_[p] || e.boxplot_count[p] == 0) continue;  // a box that runs empty says less and less
+    if (!now_[p] || e.boxplot_count[p] == 0) continue;  // keeps the last full box
     last_.q1[p] = e.q1[p];
     last_.median[p] = e.median[p];
     last_.q3[p] = e.q3[p];

@@ -111,7 +111,7 @@ std::string session_status_json(const session_status_t& s) {
                         {"saturated", s.saturated[i]},
                         {"polarity", s.polarity[i]},
                         {"problem", s.problem[i]}});
-  // Ids are beyond what JavaScript counts exactly.
+  // Ids exceed the integers that JavaScript represents exactly.
   return json_line({{"time_us", s.time_us},
                     {"state", s.state},
                     {"test", s.test},
