@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kSilent_s = 3;
 constexpr int kAllStories = 8, kMaxSwayed = 5;
-constexpr double kStronger = 1.2;  // than the newest shake: worth a line of its own
+constexpr double kStronger = 1.2;  // times the newest shake: gets a separate line
 
 std::string capital(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
@@ -33,7 +33,7 @@ std::vector<const Finding*> of_kind(const Known& known, FindingKind kind) {
   return out;
 }
 
-/// A sentence ends with a full stop.
+/// Appends a full stop unless the text ends with one.
 std::string sentence(std::string text) {
   text = capital(std::move(text));
   if (!text.empty() && text.back() != '.') text += '.';
@@ -142,7 +142,7 @@ std::string story_words(const Shake& shake, const estimator::Structure& s, int s
                      s.frame_name(peak.frame));
 }
 
-/// "Story 3: 0.42 % ± 0.01 % (12.60 mm) in frame y1", by the drifts where they are known.
+/// Returns "Story 3: 0.42 % ± 0.01 % (12.60 mm) in frame y1", from the drifts where known.
 std::string drift_line(const Known& k, const estimator::Structure& s, int story) {
   const auto i = static_cast<std::size_t>(story - 1);
   if (i >= k.drifts.size()) return story_words(*k.newest, s, story);
@@ -154,7 +154,7 @@ std::string drift_line(const Known& k, const estimator::Structure& s, int story)
                      d.gap_at_peak() ? "; the record has a gap at the peak" : "");
 }
 
-/// Every story, downward; of a tall building those that swayed most.
+/// Returns a line for each story from the top; in a tall building, for those with most drift.
 void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
   const Shake& shake = *k.newest;
   std::vector<int> stories(static_cast<std::size_t>(s.stories));
@@ -187,7 +187,7 @@ std::string accel_words(const Shake& shake, const Config& config) {
                      words(peak_accel_mps2(shake.peak, config.pipeline.axes, 0)), words(floors));
 }
 
-/// Whether the report is about this shake: strong motion lies within it.
+/// Returns true when the strong motion of the report lies within the shake.
 bool is_of(const EventReportSummary& report, const Shake& shake) {
   return report.start_us >= shake.from_us && report.start_us <= shake.to_us;
 }

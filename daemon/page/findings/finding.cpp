@@ -15,7 +15,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Kinds of events whose place is a channel of which samples are wrong or do not come.
+/// Kinds of events whose place is a channel with wrong or missing samples.
 constexpr std::array kOfChannels = {"channel_silent", "channel_stuck", "absurd_samples",
                                     "two_senders",    "losses",        "channel_table"};
 
@@ -24,7 +24,7 @@ bool is_channel(const Config& config, const std::string& place) {
   return std::any_of(axes.begin(), axes.end(), [&](const auto& a) { return a.name == place; });
 }
 
-/// A message without ", since ...": the finding has the time.
+/// Removes ", since ..." from a message, because the finding has the time.
 std::string without_time(const std::string& message) {
   const std::size_t at = message.rfind(", since ");
   return (at == std::string::npos ? message : message.substr(0, at)) + ".";

@@ -34,8 +34,8 @@ std::int64_t sum_of(const std::vector<std::int64_t>& values) {
   return std::accumulate(values.begin(), values.end(), std::int64_t{0});
 }
 
-/// What `framewatch status --json` prints. odd: what is not well. Requires heard.service. now_us:
-/// host clock.
+/// Returns the output of `framewatch status --json`. odd: the problems found. Requires
+/// heard.service. now_us: host clock.
 std::string status_json(const Heard& h, const Config& config, const std::vector<std::string>& odd,
                         const std::optional<UnitState>& unit, std::int64_t now_us) {
   const service_t& s = *h.service;
@@ -117,7 +117,7 @@ constexpr int kNotWell = 1, kUnreachable = 2;
 constexpr std::int64_t kListen_us = 4'000'000;
 constexpr int kPoll_ms = 100;
 
-/// Per second of sensor time while somebody listened; empty when nothing came twice.
+/// Returns the increase per second of sensor time; nullopt unless two reports came.
 std::optional<double> rate(const Heard& h, std::int64_t first, std::int64_t last) {
   const double seconds =
       h.first_status ? 1e-6 * static_cast<double>(h.status->time_us - h.first_status->time_us) : 0;
@@ -151,7 +151,7 @@ void print_process(const service_t& s, std::int64_t now_us) {
                               100e6 * s.cpu_s / static_cast<double>(now_us - s.started_us)));
 }
 
-/// Which configuration it runs with, and whether the file still is that one.
+/// Prints the running configuration and whether the file at `path` still has its content.
 void print_config(const service_t& s, const std::string& path) {
   std::string text = fmt::format("{}, sha256 {:.12}", s.config, s.config_sha256);
   if (s.reloads > 0) text += fmt::format(", read anew {} times", s.reloads);
@@ -193,8 +193,7 @@ void print_estimates(const Heard& h) {
                             100 * h.gap->overall_nrmse, 100 * h.gap->noise_floor));
 }
 
-/// Median of what is known; empty when nothing is.
-/// What changes are judged against.
+/// Prints the baseline that changes are measured against.
 void print_watch(const Heard& h) {
   if (!h.watch) return;
   const watch_t& w = *h.watch;
@@ -239,7 +238,7 @@ void print_actions(const Heard& h) {
   line("actions", text);
 }
 
-/// What LCM's receiver did not take, if there was anything.
+/// Prints the messages that the LCM receiver dropped, if any.
 void print_reception(const Heard& h) {
   if (!h.reception) return;
   const reception_t& r = *h.reception;
@@ -311,7 +310,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   for (const std::string& sentence : odd) line("odd", sentence);
 }
 
-/// Where the daemon is heard, from a file that is wrong: as far as it says so.
+/// Returns a configuration with only the [lcm] section of a file that has errors.
 Config only_lcm(const std::string& path) {
   Config out;
   out.path = path;
@@ -356,7 +355,7 @@ int status_command(const StatusArguments& a) {
     return kUnreachable;
   }
   const std::int64_t now_us = host_clock_us();
-  if (wrong) config->sha256 = heard.service->config_sha256;  // what is wrong is said once
+  if (wrong) config->sha256 = heard.service->config_sha256;  // reports the wrong file only once
   const auto words = [&](const event_t& e) { return finding_of(e, *config).text; };
   std::vector<std::string> odd = oddities(heard, *config, now_us, words);
   if (wrong)

@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kValid = 1;
 
-/// Of parameter_table_t::kind.
+/// Name and help of the metric by parameter_table_t::kind.
 constexpr std::array<std::pair<const char*, const char*>, 4> kKinds = {{
     {"frame_stiffness_newtons_per_meter", "Stiffness of a frame in a story."},
     {"panel_stiffness_newtons_per_radian_meter", "Shear stiffness of a floor panel."},
@@ -316,7 +316,7 @@ void add_reception(MetricFamilies& out, const reception_t& r) {
     out.value(static_cast<double>(count), {{"reason", reason}});
 }
 
-/// The records of changes that have a number.
+/// Adds the size and error of the raised changes that have both.
 void add_changes(MetricFamilies& out, const std::vector<event_t>& raised) {
   std::vector<const event_t*> sized;
   for (const event_t& e : raised)
@@ -332,7 +332,7 @@ void add_changes(MetricFamilies& out, const std::vector<event_t>& raised) {
 
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
   std::map<std::pair<std::string, std::string>, int> counts;
-  // Always there, so that an alert sees it rise from nothing.
+  // Always present, so that an alert sees the rise from 0.
   for (const char* severity : kSeverities) {
     counts[{"stiffness_change", severity}] = 0;
     counts[{"gap", severity}] = 0;

@@ -27,16 +27,16 @@
 
 namespace framewatch::daemon {
 
-/// Collects metrics by name, in the order of the calls.
+/// Collects metrics for Prometheus, in the order of the calls.
 class MetricFamilies {
  public:
   using Labels = std::vector<std::pair<std::string, std::string>>;
 
-  /// Begins a metric; the next values belong to it.
+  /// Begins a metric. The next values belong to it.
   MetricFamilies& gauge(const char* name, const char* help);
   MetricFamilies& counter(const char* name, const char* help);
   MetricFamilies& value(double value, const Labels& labels = {});
-  /// A value of each name, labelled `label`; none where it is not finite. `more`: on all of them.
+  /// Adds the finite values, each with its name in `label`. more: labels of every value.
   template <typename Values>
   MetricFamilies& each(const char* label, const std::vector<std::string>& names,
                        const Values& values, const Labels& more = {}) {
@@ -49,7 +49,8 @@ class MetricFamilies {
     }
     return *this;
   }
-  /// limit_s: upper limits, the last one infinite; counts: between them.
+  /// Adds a histogram. limit_s: upper limits, the last one infinite. counts: number of durations
+  /// between two limits.
   void histogram(const char* name, const char* help, const std::vector<double>& limit_s,
                  const std::vector<std::int64_t>& counts, double sum_s);
 
@@ -61,7 +62,7 @@ class MetricFamilies {
   std::vector<prometheus::MetricFamily> families_;
 };
 
-// The contents of each message as metrics.
+// Append the fields of a message as metrics.
 void add_service(MetricFamilies& out, const service_t& service);
 void add_status(MetricFamilies& out, const status_t& status);
 void add_estimate(MetricFamilies& out, const parameter_table_t& table,
@@ -74,7 +75,7 @@ void add_actions(MetricFamilies& out, const action_status_t& actions);
 void add_reception(MetricFamilies& out, const reception_t& reception);
 void add_uplink(MetricFamilies& out, const uplink_status_t& uplink);
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
-/// report: the newest of [event_report], if there is one.
+/// report: the newest report of [event_report], if any.
 void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report);
 
 }  // namespace framewatch::daemon

@@ -13,16 +13,16 @@
 
 namespace framewatch::daemon {
 
-/// The connections of the page now, and those it has ended since its start.
+/// The connections of the page now, and those that it has ended since its start.
 struct PageUse {
-  int waiting = 0;    ///< for their request to come whole
-  int answering = 0;  ///< an answer is being read
-  int viewers = 0;    ///< of the stream of events
+  int waiting = 0;    ///< connections whose request is incomplete
+  int answering = 0;  ///< connections that read an answer
+  int viewers = 0;    ///< connections that read the event stream
 
-  std::int64_t late_requests = 0;    ///< did not come whole in time
-  std::int64_t late_answers = 0;     ///< were not read in time
-  std::int64_t crowded_out = 0;      ///< gave their place to newer ones
-  std::int64_t viewers_refused = 0;  ///< found no place
+  std::int64_t late_requests = 0;    ///< ended: request not complete in time
+  std::int64_t late_answers = 0;     ///< ended: answer not read in time
+  std::int64_t crowded_out = 0;      ///< ended to make room for newer ones
+  std::int64_t viewers_refused = 0;  ///< refused: all viewer places taken
 };
 
 /// Makes the metrics for Prometheus (docs/metrics.md) from the latest LCM messages. Call message()

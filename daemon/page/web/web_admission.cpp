@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kShortestToken = 16;
 constexpr std::string_view kVerbs[] = {"/acknowledge", "/baseline", "/session"};
 
-/// Without its port: "[::1]:8080" is "::1".
+/// Removes the port and brackets: "[::1]:8080" becomes "::1".
 std::string host_name(const std::string& host) {
   if (host.starts_with('[')) {
     const std::size_t end = host.find(']');

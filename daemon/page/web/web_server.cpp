@@ -107,7 +107,7 @@ class WebServer::Implementation {
       guard.closed(socket_of(c));
   }
 
-  /// Called when the head of a request is whole; what a body holds is never waited for.
+  /// Handles a request when its head is complete. Never waits for a body.
   static MHD_Result handle(void* of, MHD_Connection* c, const char* url, const char* method,
                            const char*, const char*, std::size_t*, void**) {
     auto& self = *static_cast<Implementation*>(of);
@@ -178,7 +178,8 @@ class WebServer::Implementation {
                        : plain(c, MHD_HTTP_ACCEPTED, std::to_string(*asked));
   }
 
-  /// Answers with the id of the command; the recorder's answer with that id comes as an event.
+  /// Answers with the id of the command. The recorder's answer comes later as an event with that
+  /// id.
   MHD_Result tell_recorder(MHD_Connection* c) {
     const auto text = [c](const char* name) { return header(c, name, MHD_GET_ARGUMENT_KIND); };
     SessionRequest request{text("test"), text("operator"), text("notes")};
@@ -199,12 +200,11 @@ class WebServer::Implementation {
     return plain(c, MHD_HTTP_ACCEPTED, std::to_string(command.id));
   }
 
-  /// Replaces the token in the address by a cookie that scripts cannot read.
+  /// Replaces the token in the address with a cookie that scripts cannot read.
   MHD_Result exchange(MHD_Connection* c, const std::string& token) {
     MHD_Response* response = MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
     if (!response) return MHD_NO;
     MHD_add_response_header(response, "Location", "/");
-    // A server without a token needs no cookie.
     if (!settings_.token.empty() && token == settings_.token)
       MHD_add_response_header(
           response, "Set-Cookie",
@@ -227,7 +227,7 @@ class WebServer::Implementation {
     MHD_Response* response = MHD_create_response_from_callback(
         MHD_SIZE_UNKNOWN, kBlock, &Implementation::read, viewer.get(), &Implementation::leave);
     if (!response) return MHD_NO;
-    (void)viewer.release();  // leave() has it now
+    (void)viewer.release();  // leave() owns it now
     MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
     return send_answer(c, MHD_HTTP_OK, response);
   }
@@ -257,7 +257,7 @@ class WebServer::Implementation {
   MHD_Daemon* daemon_ = nullptr;
   int port_ = 0;
   std::mutex mutex_;
-  std::set<MHD_Connection*> waiting_;  ///< suspended, because they have read everything
+  std::set<MHD_Connection*> waiting_;  ///< suspended until new events come
   std::atomic<bool> stopping_ = false;
 };
 

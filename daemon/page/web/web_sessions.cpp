@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kMaxShown = 200;
 
-/// As session_folder_name() makes them: nothing that leads elsewhere.
+/// Returns true for names that session_folder_name() makes, which cannot lead out of the folder.
 bool is_session_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_';

@@ -22,7 +22,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kNotAccepted = 1024;
-// Linux takes twice as much, for its own bookkeeping.
+// Linux doubles the value for its own bookkeeping.
 constexpr int kSend_bytes = 128 * 1024, kReceive_bytes = 32 * 1024;
 
 PeerAddress peer_of_ipv4(const in_addr& address) {
@@ -48,12 +48,12 @@ constexpr std::string_view kTooLate =
     "HTTP/1.1 408 Request Timeout\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
 constexpr std::int64_t kLineEvery_us = 60 * kSecond_us;
 
-/// Whoever serves the socket sees its end and closes it.
+/// Shuts the socket down. The web server then sees its end and closes it.
 void end_socket(int socket, WebConnections::Why why) {
   if (why == WebConnections::Why::late_request) {
     (void)::send(socket, kTooLate.data(), kTooLate.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   } else {
-    // What waits in the kernel to be sent goes with it.
+    // Data that waits in the kernel is dropped.
     const linger none{1, 0};
     ::setsockopt(socket, SOL_SOCKET, SO_LINGER, &none, sizeof none);
   }
