@@ -74,25 +74,24 @@ Answer is_changed(const Known& k) {
   }
   if (k.with_baseline == 0) {
     out.state = AnswerState::wait;
-    out.line.text = "Not known yet: what it is like unchanged is learned first, while it moves.";
+    out.line.text = "Not known yet: the baseline is still being learned, which needs motion.";
     return out;
   }
   out.line.text =
       k.with_baseline < k.watched
           ? fmt::format("No change found in {} of {} elements; the others have no baseline yet.",
                         k.with_baseline, k.watched)
-          : fmt::format("No. None of {} elements differs from what it was like (its baseline).",
-                        k.watched);
+          : fmt::format("No. None of {} elements differs from its baseline.", k.watched);
   if (k.observable < k.with_baseline)
-    out.more.push_back({fmt::format("Now {} of them have a value: where it hardly moves, the last "
-                                    "values stand.",
+    out.more.push_back({fmt::format("{} of them have a value now; the others keep their last value "
+                                    "until the building moves more.",
                                     k.observable),
                         0, 0});
   return out;
 }
 
 Answer is_believed(const Known& k, const Config& config) {
-  Answer out{"Is what I see to be believed?", AnswerState::good, {}, {}};
+  Answer out{"Can I trust this?", AnswerState::good, {}, {}};
   const std::vector<const Finding*> doubts = of_kind(k, FindingKind::belief);
   std::set<std::string> dead;
   for (const Finding* f : doubts)
@@ -101,12 +100,12 @@ Answer is_believed(const Known& k, const Config& config) {
   if (!k.same_config) out.more.push_back({"The estimator runs with another configuration.", 0, 0});
   if (!k.samples || k.silent_s > kSilent_s) {
     out.state = k.samples ? AnswerState::bad : AnswerState::wait;
-    out.line.text = k.samples ? fmt::format("No: no samples for {}. What is shown is old.",
+    out.line.text = k.samples ? fmt::format("No: no samples for {}. The values shown are old.",
                                             span_text(k.silent_s))
-                              : "There is nothing to believe yet: no samples have come.";
+                              : "Not yet: no samples have come.";
   } else if (k.estimates && k.estimates_silent_s > kSilent_s) {
     out.state = AnswerState::bad;
-    out.line.text = fmt::format("No: samples come, but the estimator says nothing for {}.",
+    out.line.text = fmt::format("No: samples come, but there are no estimates for {}.",
                                 span_text(k.estimates_silent_s));
   } else if (!out.more.empty()) {
     out.state = AnswerState::look;
@@ -264,16 +263,17 @@ Answer to_do(const Known& k) {
   });
   std::vector<std::string> steps;
   if (k.samples && k.silent_s > kSilent_s)
-    steps.emplace_back("Find out why no samples come: framewatch status.");
+    steps.emplace_back("Run `framewatch status` to find out why no samples come.");
   else if (k.estimates && k.estimates_silent_s > kSilent_s)
-    steps.emplace_back("Find out why framewatch run says nothing: framewatch status.");
+    steps.emplace_back("Run `framewatch status` to find out why there are no estimates.");
   for (const Finding* f : open)
     if (std::find(steps.begin(), steps.end(), f->advice) == steps.end()) steps.push_back(f->advice);
   if (!k.same_config)
-    steps.emplace_back("Start serve or run anew, so that both have the same configuration.");
+    steps.emplace_back(
+        "Restart framewatch serve or framewatch run, so that both use the same configuration.");
   if (steps.empty()) {
-    out.line.text = !k.samples             ? "Start framewatch run, and whatever sends the samples."
-                    : k.with_baseline == 0 ? "Nothing but wait."
+    out.line.text = !k.samples             ? "Start framewatch run and the source of the samples."
+                    : k.with_baseline == 0 ? "Wait until the baseline is learned."
                                            : "Nothing.";
     out.state = k.samples ? AnswerState::good : AnswerState::wait;
     return out;

@@ -37,14 +37,12 @@ void describe_change(Finding& f, const Config& config) {
   if (f.place == kWholeBuilding) {
     f.text = without_time(f.text);
     f.advice =
-        "Find out which it is: look at temperature, load, and the sensors' scale and clock. If "
-        "none "
-        "explains it, have a structural engineer look at the building.";
+        "Check temperature, load, and the scale and clock of the sensors. If none "
+        "explains the change, have a structural engineer inspect the building.";
     return;
   }
   f.advice = fmt::format(
-      "Have a structural engineer look at {} before the building is used as before; then "
-      "acknowledge "
+      "Have a structural engineer inspect {} before normal use continues; then acknowledge "
       "the finding.",
       at ? place_words(f.place) : f.place);
   const std::size_t at_recovery = f.text.find(kAfterStrongMotion);
@@ -63,25 +61,25 @@ void describe_change(Finding& f, const Config& config) {
 void describe_strong_motion(Finding& f) {
   f.kind = FindingKind::shake;
   f.text = f.text.substr(0, f.text.find("; report ")) + ".";
-  f.advice =
-      f.severity == severity::alarm
-          ? "Have a structural engineer look at the building before it is used as before: the "
-            "report of the strong motion says where."
-          : "Have a structural engineer read the report of the strong motion: it says what to look "
-            "at.";
+  f.advice = f.severity == severity::alarm
+                 ? "Have a structural engineer inspect the building before normal use continues. "
+                   "The report of the strong motion lists where."
+                 : "Have a structural engineer read the report of the strong motion. It lists what "
+                   "to inspect.";
 }
 
 void describe_channel(Finding& f, const std::string& kind) {
   f.kind = FindingKind::belief;
   f.of_channel = true;
   if (kind == "channel_silent" || kind == "channel_stuck")
-    f.advice = fmt::format("Look at sensor {}: power, cable, mounting.", f.place);
+    f.advice = fmt::format("Check the power, cable and mounting of sensor {}.", f.place);
   else if (kind == "absurd_samples")
-    f.advice = fmt::format("Look at sensor {}: its values are not possible.", f.place);
+    f.advice = fmt::format("Check sensor {}: its values are impossible.", f.place);
   else if (kind == "two_senders" || kind == "channel_table")
-    f.advice = fmt::format("Find out who else sends as {}: a node's number given twice?", f.place);
+    f.advice = fmt::format(
+        "Find the other node that sends as {}: two nodes may have the same number.", f.place);
   else
-    f.advice = fmt::format("Look at the network of {}: samples are lost.", f.place);
+    f.advice = fmt::format("Check the network of {}: samples are lost.", f.place);
 }
 
 constexpr int kIdentifies = 1;  // window_estimate_t::status
@@ -110,9 +108,10 @@ Finding finding_of(const event_t& e, const Config& config) {
     describe_channel(f, e.kind);
   } else if (e.kind == "sequence_leap") {
     f.advice =
-        "Nothing, if sensor nodes were started anew; else find out who sends under their numbers.";
+        "Nothing if sensor nodes restarted; otherwise find out which other node sends with their "
+        "numbers.";
   } else {
-    f.advice = fmt::format("See to {} {}: framewatch status says more.", e.kind, e.place);
+    f.advice = fmt::format("Check {} {}. Run `framewatch status` for details.", e.kind, e.place);
   }
   return f;
 }

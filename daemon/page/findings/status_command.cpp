@@ -138,9 +138,9 @@ void print_process(const service_t& s, std::int64_t now_us) {
       fmt::format("for {}, since {}", span_text(1e-6 * static_cast<double>(now_us - s.started_us)),
                   utc_and_local_text(s.started_us));
   if (s.starts > 0)
-    running += fmt::format("; {}; {} starts, {} unasked",
-                           s.resumed != 0 ? "went on from its state" : "began anew", s.starts,
-                           s.unclean_starts);
+    running += fmt::format("; {}; {} starts, {} after a crash",
+                           s.resumed != 0 ? "resumed from its state file" : "started afresh",
+                           s.starts, s.unclean_starts);
   line("running", running);
   if (s.state_written_us > 0)
     line("state", fmt::format("written {} ago, {:.1f} GB of disk free",
@@ -154,7 +154,7 @@ void print_process(const service_t& s, std::int64_t now_us) {
 /// Prints the running configuration and whether the file at `path` still has its content.
 void print_config(const service_t& s, const std::string& path) {
   std::string text = fmt::format("{}, sha256 {:.12}", s.config, s.config_sha256);
-  if (s.reloads > 0) text += fmt::format(", read anew {} times", s.reloads);
+  if (s.reloads > 0) text += fmt::format(", reloaded {} times", s.reloads);
   const std::string now = sha256_of_file(path);
   line("config", text + (now == s.config_sha256 ? ", as it is on the disk"
                          : now.empty()          ? fmt::format("; {} cannot be read", path)
@@ -204,14 +204,14 @@ void print_watch(const Heard& h) {
     return count;
   };
   std::string text = known(w.baseline) + known(w.quiet_baseline) == 0
-                         ? std::string("no baseline yet, nothing is compared")
+                         ? std::string("no baseline yet, changes are not detected")
                          : fmt::format("{} of {} stiffnesses have a baseline", known(w.baseline),
                                        std::count(w.watched.begin(), w.watched.end(), 1));
   if (w.long_window_s > 0)
     text += w.quiet_learned_ratio < 1
-                ? fmt::format(", the one of weak motion is {:.0f} % learned",
+                ? fmt::format(", the baseline of weak motion is {:.0f} % learned",
                               100 * w.quiet_learned_ratio)
-                : fmt::format(", {} one of weak motion", known(w.quiet_baseline));
+                : fmt::format(", {} a baseline of weak motion", known(w.quiet_baseline));
   if (const double slope = median(w.per_degc); std::isfinite(slope))
     text += fmt::format("; {:+.2f} % per degC (median)", 100 * slope);
   if (std::isfinite(w.temperature_degc)) text += fmt::format("; {:.1f} degC", w.temperature_degc);
@@ -232,7 +232,7 @@ void print_actions(const Heard& h) {
   if (!h.actions) return;
   std::string text;
   for (std::size_t i = 0; i < h.actions->name.size(); ++i)
-    text += fmt::format("{}{}: {} events told, {} wait, {} lost", i == 0 ? "" : "; ",
+    text += fmt::format("{}{}: {} events sent, {} waiting, {} lost", i == 0 ? "" : "; ",
                         h.actions->name[i], h.actions->told[i], h.actions->waiting[i],
                         h.actions->lost[i]);
   line("actions", text);
@@ -243,11 +243,12 @@ void print_reception(const Heard& h) {
   if (!h.reception) return;
   const reception_t& r = *h.reception;
   std::vector<std::string> dropped;
-  for (const auto& [count, what] : {std::pair{r.datagrams_elsewhere, "datagrams from elsewhere"},
-                                    std::pair{r.datagrams_malformed, "that are no LCM"},
-                                    std::pair{r.datagrams_overflowed, "by a full receive buffer"},
-                                    std::pair{r.messages_unfinished, "unfinished messages"},
-                                    std::pair{r.messages_dropped, "messages by a full queue"}})
+  for (const auto& [count, what] :
+       {std::pair{r.datagrams_elsewhere, "datagrams from other networks"},
+        std::pair{r.datagrams_malformed, "that are no LCM"},
+        std::pair{r.datagrams_overflowed, "by a full receive buffer"},
+        std::pair{r.messages_unfinished, "unfinished messages"},
+        std::pair{r.messages_dropped, "messages by a full queue"}})
     if (count > 0) dropped.push_back(fmt::format("{} {}", count, what));
   if (!dropped.empty()) line("dropped", fmt::format("{}", fmt::join(dropped, ", ")));
 }

@@ -85,14 +85,14 @@ void add_service(MetricFamilies& out, const service_t& s) {
   const auto number = [](std::int64_t n) { return static_cast<double>(n); };
   out.gauge("build_info", "Always 1: which program runs with which configuration.")
       .value(1, {{"version", s.version}, {"config_sha256", s.config_sha256}});
-  out.gauge("start_time_seconds", "When this process of framewatch run began, Unix time.")
+  out.gauge("start_time_seconds", "Start of this framewatch run process, Unix time.")
       .value(seconds(s.started_us));
   if (s.starts > 0) {
     out.counter("starts_total", "Starts of framewatch run with its state file.")
         .value(number(s.starts));
-    out.counter("unclean_starts_total", "Starts after a run that nobody had told to stop.")
+    out.counter("unclean_starts_total", "Starts after a run that ended without a stop signal.")
         .value(number(s.unclean_starts));
-    out.gauge("resumed", "1: this process went on from the state file; 0: it began anew.")
+    out.gauge("resumed", "1: this process resumed from the state file; 0: it started afresh.")
         .value(s.resumed);
     out.gauge("state_write_failed", "1: the newest write of the state file failed.")
         .value(s.state_problem.empty() ? 0 : 1);
@@ -101,9 +101,9 @@ void add_service(MetricFamilies& out, const service_t& s) {
     out.gauge("state_written_timestamp_seconds", "When the state file was last written.")
         .value(seconds(s.state_written_us));
   if (s.disk_free_bytes >= 0)
-    out.gauge("state_disk_free_bytes", "Free where the state file goes.")
+    out.gauge("state_disk_free_bytes", "Free bytes on the disk of the state file.")
         .value(number(s.disk_free_bytes));
-  out.counter("reloads_total", "Times the configuration was asked to be read anew.")
+  out.counter("reloads_total", "Requested reloads of the configuration, by result.")
       .value(number(s.reloads), {{"result", "done"}})
       .value(number(s.reloads_refused), {{"result", "refused"}});
   out.gauge("config_last_reload_successful", "0: the newest reload was refused.")
@@ -111,10 +111,10 @@ void add_service(MetricFamilies& out, const service_t& s) {
   out.gauge("resident_memory_bytes", "Memory of framewatch run.").value(number(s.resident_bytes));
   out.counter("cpu_seconds_total", "Processor time of framewatch run.").value(s.cpu_s);
   if (s.received_us > 0)
-    out.gauge("last_sample_received_timestamp_seconds", "When any sample last came, host clock.")
+    out.gauge("last_sample_received_timestamp_seconds", "Arrival of the newest sample, host clock.")
         .value(seconds(s.received_us));
   out.gauge("channel_last_sample_timestamp_seconds",
-            "Sensor time of the channel's newest sample; none while none has come.");
+            "Sensor time of the channel's newest sample; missing before the first.");
   std::int64_t newest_us = 0;
   for (std::size_t i = 0; i < s.name.size(); ++i) {
     newest_us = std::max(newest_us, s.newest_us[i]);
@@ -153,7 +153,7 @@ void add_status(MetricFamilies& out, const status_t& s) {
       .each("channel", s.name, s.rejected, {{"reason", "rejected"}})
       .each("channel", s.name, s.stuck, {{"reason", "stuck"}});
   out.gauge("channel_noise_mps2_per_root_hertz",
-            "Noise density reckoned with, m/s^2/sqrt(Hz); none while it is not known.")
+            "Noise density used, m/s^2/sqrt(Hz); missing while unknown.")
       .each("channel", s.name, s.noise_mps2_per_rthz);
 }
 
@@ -164,14 +164,14 @@ void add_estimate(MetricFamilies& out, const parameter_table_t& table, const win
   out.gauge("window_valid", "1: the newest window has values; 0: it is warming up or quiet.")
       .value(e.status == kValid ? 1 : 0);
   if (std::isfinite(e.residual_ratio))
-    out.gauge("window_residual_ratio", "What the model leaves of the response, over the response.")
+    out.gauge("window_residual_ratio", "Rms of the residual over the rms of the response.")
         .value(e.residual_ratio);
   for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
     out.gauge(kKinds[kind].first, kKinds[kind].second);
     for (std::size_t p = 0; p < e.value.size(); ++p)
       if (valid(p) && table.kind[p] == static_cast<int>(kind)) out.value(e.value[p], labels(p));
   }
-  out.gauge("parameter_valid", "1: the newest window shows it; without, there is no value above.");
+  out.gauge("parameter_valid", "1: the newest window has a value; 0: the value is missing above.");
   for (std::size_t p = 0; p < e.value.size(); ++p) out.value(valid(p) ? 1 : 0, labels(p));
   out.gauge("parameter_standard_error_ratio", "Standard error over the value.");
   for (std::size_t p = 0; p < e.value.size(); ++p)
@@ -191,36 +191,40 @@ void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_
     for (std::size_t p = 0; p < w.watched.size(); ++p)
       if (std::isfinite(value(p))) out.value(value(p), labels_of(table, p));
   };
-  each("baseline", "What changes are judged against, in the parameter's unit.",
+  each("baseline", "Value that changes are measured against, in the parameter's unit.",
        [&](std::size_t p) { return w.baseline[p]; });
-  each("baseline_standard_error_ratio", "Standard error of that over the value.",
+  each("baseline_standard_error_ratio", "Standard error of the baseline over the baseline.",
        [&](std::size_t p) { return w.baseline_std_error[p] / w.baseline[p]; });
-  each("quiet_baseline", "The same of weak motion.",
+  each("quiet_baseline", "Baseline of weak motion.",
        [&](std::size_t p) { return w.quiet_baseline[p]; });
-  each("quiet_baseline_standard_error_ratio", "Standard error of that over the value.",
+  each("quiet_baseline_standard_error_ratio", "Standard error of the baseline over the baseline.",
        [&](std::size_t p) { return w.quiet_std_error[p] / w.quiet_baseline[p]; });
-  each("quiet_baseline_per_degree_celsius_ratio", "How the baseline of weak motion changes.",
+  each("quiet_baseline_per_degree_celsius_ratio",
+       "Relative change of the baseline of weak motion per degree Celsius.",
        [&](std::size_t p) { return w.per_degc[p]; });
-  each("quiet_baseline_per_log_amplitude_ratio", "The same with the logarithm of the amplitude.",
+  each("quiet_baseline_per_log_amplitude_ratio",
+       "Relative change of the baseline of weak motion with the logarithm of the amplitude.",
        [&](std::size_t p) { return w.per_log_amplitude[p]; });
   if (w.long_window_s > 0)
-    out.gauge("quiet_baseline_learned_ratio", "Part of what its learning takes.")
+    out.gauge("quiet_baseline_learned_ratio",
+              "Learned part of the baseline of weak motion, 0 to 1.")
         .value(w.quiet_learned_ratio);
   if (std::isfinite(w.temperature_degc))
-    out.gauge("temperature_celsius", "What the thermometer says.").value(w.temperature_degc);
+    out.gauge("temperature_celsius", "Temperature that the thermometer measures.")
+        .value(w.temperature_degc);
 }
 
 void add_gap(MetricFamilies& out, const gap_t& g) {
-  out.gauge("gap_ratio", "Simulation against measurement, NRMSE over the last window.")
+  out.gauge("gap_ratio", "Gap between simulation and measurement, NRMSE over the last window.")
       .value(g.overall_nrmse);
   if (std::isfinite(g.noise_floor))
-    out.gauge("gap_noise_floor_ratio", "The least it can be with these sensors.")
+    out.gauge("gap_noise_floor_ratio", "Least gap that the sensor noise allows.")
         .value(g.noise_floor);
-  out.gauge("channel_gap_ratio", "The same of one channel.").each("channel", g.name, g.nrmse);
+  out.gauge("channel_gap_ratio", "Gap of one channel.").each("channel", g.name, g.nrmse);
 }
 
 void add_can(MetricFamilies& out, const can_status_t& s) {
-  out.gauge("can_bus_state", "1 for the state the bus is in, 0 for the others.");
+  out.gauge("can_bus_state", "1 for the state of the bus, 0 for the other states.");
   constexpr std::array kStates = {"gone", "active", "warning", "passive", "off"};  // from -1
   for (std::size_t b = 0; b < s.interface.size(); ++b)
     for (std::size_t state = 0; state < kStates.size(); ++state)
@@ -228,9 +232,10 @@ void add_can(MetricFamilies& out, const can_status_t& s) {
                 {{"interface", s.interface[b]}, {"state", kStates[state]}});
   out.gauge("can_frames_per_second", "All frames on the bus.")
       .each("interface", s.interface, s.frames_hz);
-  out.gauge("can_load_ratio", "Share of the time the bus is taken, at most.")
+  out.gauge("can_load_ratio", "Upper bound of the share of time that the bus is busy.")
       .each("interface", s.interface, s.load);
-  out.gauge("can_expected_load_ratio", "The same, of the configured nodes.")
+  out.gauge("can_expected_load_ratio",
+            "Upper bound of the load expected from the configured nodes.")
       .each("interface", s.interface, s.expected_load);
   out.counter("can_error_frames_total", "Error frames.")
       .each("interface", s.interface, s.error_frames);
@@ -246,17 +251,17 @@ void add_can(MetricFamilies& out, const can_status_t& s) {
 
 void add_uplink(MetricFamilies& out, const uplink_status_t& s) {
   const auto number = [](std::int64_t n) { return static_cast<double>(n); };
-  out.gauge("uplink_connected", "1: a connection to a hub stands.").value(s.connected);
+  out.gauge("uplink_connected", "1: connected to a hub.").value(s.connected);
   out.gauge("uplink_acknowledged_timestamp_seconds",
             "Host clock of the newest acknowledgement of the hub, Unix time; 0: none yet.")
       .value(1e-6 * number(s.acknowledged_us));
-  out.gauge("uplink_waiting", "What the hub has not acknowledged, by kind.")
+  out.gauge("uplink_waiting", "Messages that the hub has not acknowledged, by kind.")
       .value(number(s.events_waiting), {{"kind", "event"}})
       .value(number(s.summaries_waiting), {{"kind", "summary"}})
       .value(number(s.pieces_waiting), {{"kind", "raw"}});
   out.counter("uplink_acknowledged_total", "Messages that the hub acknowledged.")
       .value(number(s.acknowledged));
-  out.counter("uplink_sent_again_total", "Messages sent again because nothing came back.")
+  out.counter("uplink_sent_again_total", "Messages sent again because no acknowledgement came.")
       .value(number(s.sent_again));
   out.counter("uplink_refused_total", "Messages that the hub refused; they are kept.")
       .value(number(s.refused));
@@ -275,35 +280,35 @@ void add_history(MetricFamilies& out, const history_status_t& s) {
   const auto number = [](std::int64_t n) { return static_cast<double>(n); };
   out.counter("history_samples_total", "Raw samples given to the history.")
       .value(number(s.raw_samples));
-  out.counter("history_dropped_total", "What the disk did not take, by kind.")
+  out.counter("history_dropped_total", "Dropped because the disk was too slow or failed, by kind.")
       .value(number(s.raw_dropped), {{"kind", "raw"}})
       .value(number(s.summary_dropped), {{"kind", "summary"}});
   out.counter("history_written_bytes_total", "Raw samples written, before compression.")
       .value(number(s.raw_bytes));
   out.gauge("history_queue_bytes", "Raw samples that wait for the disk.")
       .value(number(s.raw_queue_bytes));
-  out.gauge("history_trouble", "1: the disk does not take it.")
+  out.gauge("history_trouble", "1: the history cannot be written.")
       .value(s.raw_trouble.empty() ? 0 : 1, {{"kind", "raw"}})
       .value(s.summary_trouble.empty() ? 0 : 1, {{"kind", "summary"}});
   out.gauge("history_stored_until_timestamp_seconds",
             "Windows that end before this sensor time are in the database.")
       .value(1e-6 * number(s.summary_until_us));
-  out.gauge("history_stored_bytes", "Everything in the history's directory.")
+  out.gauge("history_stored_bytes", "Size of the history's directory.")
       .value(number(s.stored_bytes));
   if (s.disk_free_bytes >= 0)
-    out.gauge("history_disk_free_bytes", "Free where the history goes.")
+    out.gauge("history_disk_free_bytes", "Free bytes on the disk of the history.")
         .value(number(s.disk_free_bytes));
 }
 
 void add_actions(MetricFamilies& out, const action_status_t& s) {
-  out.counter("action_events_total", "Events that somebody was told, and that nobody was.")
+  out.counter("action_events_total", "Events for which a notification was sent, or lost.")
       .each("way", s.name, s.told, {{"result", "told"}})
       .each("way", s.name, s.lost, {{"result", "lost"}});
-  out.gauge("action_waiting_events", "Events that are to be told.").each("way", s.name, s.waiting);
+  out.gauge("action_waiting_events", "Events whose notification waits.")
+      .each("way", s.name, s.waiting);
   std::vector<int> trouble;
   for (const std::string& why : s.trouble) trouble.push_back(why.empty() ? 0 : 1);
-  out.gauge("action_trouble", "1: the newest try to tell somebody failed.")
-      .each("way", s.name, trouble);
+  out.gauge("action_trouble", "1: the newest notification failed.").each("way", s.name, trouble);
 }
 
 void add_reception(MetricFamilies& out, const reception_t& r) {
@@ -324,9 +329,9 @@ void add_changes(MetricFamilies& out, const std::vector<event_t>& raised) {
       sized.push_back(&e);
   if (sized.empty()) return;
   out.gauge("stiffness_change_ratio",
-            "Size of a change that is raised, relative to the baseline; negative: a loss.");
+            "Size of a raised change relative to the baseline; negative: a loss.");
   for (const event_t* e : sized) out.value(e->value / 100, {{"parameter", e->place}});
-  out.gauge("stiffness_change_error_ratio", "Its standard error.");
+  out.gauge("stiffness_change_error_ratio", "Standard error of the size of a raised change.");
   for (const event_t* e : sized) out.value(e->std_error / 100, {{"parameter", e->place}});
 }
 

@@ -11,14 +11,14 @@ constexpr const char* kStiffnessChange = "stiffness_change";
 void add_page_use(MetricFamilies& out, const PageUse& use) {
   const auto number = [](std::int64_t n) { return static_cast<double>(n); };
   out.gauge("serve_viewers", "Open pages of framewatch serve.").value(use.viewers);
-  out.gauge("serve_connections", "Connections that are not viewers, by what they wait for.")
+  out.gauge("serve_connections", "Connections of requests and answers, by state.")
       .value(use.waiting, {{"state", "request"}})
       .value(use.answering, {{"state", "answer"}});
   out.counter("serve_connections_ended_total", "Connections ended by framewatch serve, by reason.")
       .value(number(use.late_requests), {{"reason", "late_request"}})
       .value(number(use.late_answers), {{"reason", "late_answer"}})
       .value(number(use.crowded_out), {{"reason", "crowded"}});
-  out.counter("serve_viewers_refused_total", "Viewers for whom there was no place.")
+  out.counter("serve_viewers_refused_total", "Viewers refused because all places were taken.")
       .value(number(use.viewers_refused));
 }
 
@@ -50,8 +50,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   const std::optional<EventReportSummary> report = reports_.look();
   lock.unlock();
   MetricFamilies out;
-  out.gauge("up", "1: framewatch run has been heard of in the last 5 s.")
-      .value(fresh.service ? 1 : 0);
+  out.gauge("up", "1: framewatch run has published in the last 5 s.").value(fresh.service ? 1 : 0);
   if (fresh.service) {
     add_service(out, *fresh.service);
     for (std::size_t i = 0; i < fresh.service->event_id.size(); ++i) {
@@ -72,7 +71,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   if (fresh.actions) add_actions(out, *fresh.actions);
   if (fresh.reception) add_reception(out, *fresh.reception);
   if (config_.fleet)
-    out.gauge("uplink_up", "1: framewatch uplink has been heard of in the last 5 s.")
+    out.gauge("uplink_up", "1: framewatch uplink has published in the last 5 s.")
         .value(fresh.uplink ? 1 : 0);
   if (fresh.uplink) add_uplink(out, *fresh.uplink);
   add_events(out, raised.all());

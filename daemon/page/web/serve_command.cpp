@@ -103,7 +103,7 @@ int serve(const ServeArguments& a) {
   if (config->history) {
     std::vector<std::string> notes;
     view.restore(stored_history(*config, notes), host_clock_us());
-    for (const std::string& note : notes) log(LogLevel::notice, "of what was before: " + note);
+    for (const std::string& note : notes) log(LogLevel::notice, "history:  " + note);
   }
   WebServer server(*settings, view);
   const int socket = listen_on(settings->address, settings->port, error);

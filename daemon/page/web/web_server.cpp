@@ -71,7 +71,7 @@ class WebServer::Implementation {
                                  static_cast<unsigned>(most), MHD_OPTION_CONNECTION_TIMEOUT,
                                  settings_.connections.idle_s, MHD_OPTION_NOTIFY_CONNECTION,
                                  &Implementation::notify, this, MHD_OPTION_END);
-      if (!daemon_) error = "libmicrohttpd cannot start";
+      if (!daemon_) error = "cannot start libmicrohttpd";
     }
     if (!daemon_) {
       ::close(socket);
@@ -163,8 +163,8 @@ class WebServer::Implementation {
     if (path == "/baseline") {
       if (!view_.renew_baseline())
         return plain(c, MHD_HTTP_CONFLICT,
-                     "the baseline is that of framewatch run: [watch] of its configuration");
-      return plain(c, MHD_HTTP_OK, "the next seconds are the new baseline");
+                     "framewatch run keeps the baseline, because the configuration has [watch]");
+      return plain(c, MHD_HTTP_OK, "the baseline is learned anew from the next seconds");
     }
     if (path == "/session") return tell_recorder(c);
     const std::string text = header(c, "id", MHD_GET_ARGUMENT_KIND);
@@ -190,13 +190,14 @@ class WebServer::Implementation {
       const char* const end = given.data() + given.size();
       const auto [parsed, error] = std::from_chars(given.data(), end, *value);
       if (!given.empty() && (error != std::errc() || parsed != end))
-        return plain(c, MHD_HTTP_BAD_REQUEST, std::string(name) + ": is no number");
+        return plain(c, MHD_HTTP_BAD_REQUEST, std::string(name) + ": is not a number");
     }
     for (const std::string& problem : problems(request))
       return plain(c, MHD_HTTP_BAD_REQUEST, problem);
     const session_command_t command = session_command(text("verb"), request);
     if (!view_.tell_recorder(command))
-      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many commands at once");
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE,
+                   "too many commands are waiting: try again later");
     return plain(c, MHD_HTTP_ACCEPTED, std::to_string(command.id));
   }
 
@@ -222,7 +223,7 @@ class WebServer::Implementation {
 
   MHD_Result stream(MHD_Connection* c) {
     if (!guard_.watches(socket_of(c)))
-      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many viewers");
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many viewers: try again later");
     auto viewer = std::make_unique<Viewer>(Viewer{this, c, view_.join()});
     MHD_Response* response = MHD_create_response_from_callback(
         MHD_SIZE_UNKNOWN, kBlock, &Implementation::read, viewer.get(), &Implementation::leave);

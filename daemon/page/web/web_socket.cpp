@@ -77,8 +77,8 @@ bool allow_descriptors(int count, std::string& error) {
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return true;
   if (limit.rlim_max < wanted) {
     error = fmt::format(
-        "{} files must be open at once (--viewers) and this process may open {}: raise ulimit -n, "
-        "under systemd LimitNOFILE",
+        "--viewers needs {} open files, but this process may open only {}: raise ulimit -n (under "
+        "systemd LimitNOFILE)",
         count, limit.rlim_max);
     return false;
   }
@@ -97,7 +97,7 @@ int listen_on(const std::string& address, int port, std::string& error) {
   const bool six = address.find(':') != std::string::npos;
   void* to = six ? static_cast<void*>(&v6.sin6_addr) : static_cast<void*>(&v4.sin_addr);
   if (::inet_pton(six ? AF_INET6 : AF_INET, address.c_str(), to) != 1) {
-    error = address + ": is no IP address";
+    error = address + ": is not an IP address";
     return -1;
   }
   const int socket = ::socket(six ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -179,7 +179,7 @@ void ConnectionGuard::report(std::int64_t now_us) {
       "the page ended {} connections that were too slow and {} for newer ones, and refused {} "
       "viewers",
       late, crowded, refused);
-  if (late + crowded > 0) line += "; the last was of " + last_address_;
+  if (late + crowded > 0) line += "; the last one came from " + last_address_;
   log(LogLevel::warning, line);
 }
 
