@@ -2,7 +2,7 @@
 // Ties the stream of events to what is drawn. All numbers shown come from the events.
 const $ = id => document.getElementById(id);
 const reasons = ['', 'first window not complete', 'moves too little', 'floor too stiff', 'plan symmetric', 'sensor lost', 'moves, but too uncertain'];
-const fitWords = ['', 'it fits', 'only changes mean something', 'the model does not fit'];
+const fitWords = ['', 'it fits', 'only changes are reliable', 'the model does not fit'];
 const kSilence_ms = 1500;
 let plan, building, boxPlots = [], strips = {}, boxes, estimate, fit, baseline = [], status, chosen = 0;
 let lastMotion = 0, lastAlive = 0, lastRow = null, frames = [], known = [];
@@ -89,7 +89,7 @@ function start(json) {
   strips.drift = new Strip(parent, 'story drift, mm', 'Displacement of the floor above less that below in the frame, by two leaky integrations for the eye; the estimator integrates nothing.', [{name: 'drift', color: 'purple'}], 10, rate);
   strips.k = new Strip(parent, 'stiffness', 'The newest window\'s value with one standard error to either side; baseline dashed.', [{name: 'value', color: 'blue', width: 2}, {name: '+ error', color: 'blue', width: 0.5}, {name: '- error', color: 'blue', width: 0.5, band: true}, {name: 'baseline', color: 'soft', dash: [5, 4]}], 300, 4);
   strips.excitation = new Strip(parent, 'excitation: rms of the base over a second, m/s²', 'Without excitation nothing can be identified.', [{name: 'base rms', color: 'green'}], 300, 4);
-  strips.residual = new Strip(parent, 'residual over response', 'What the identified model leaves of the measured response in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
+  strips.residual = new Strip(parent, 'residual over response', 'Part of the measured response that the identified model does not explain in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
   startSession();
   choose(0);
   const bar = document.createElement('canvas');
@@ -165,7 +165,7 @@ function takeMotion(m) {
 // Until a gap arrives there is no strip for it.
 function onGap(g) {
   window.framewatch.gap = g;
-  if (!strips.gap) strips.gap = new Strip($('strips'), 'gap', 'What a simulation with the identified values does not explain of the measurement, rms over rms: of all channels, of the chosen one, and the least that sensor noise allows.', [{name: 'all channels', color: 'orange', width: 2}, {name: 'chosen channel', color: 'blue'}, {name: 'noise floor', color: 'soft', dash: [5, 4]}], 300, 4);
+  if (!strips.gap) strips.gap = new Strip($('strips'), 'gap', 'Part of the measurement that a simulation with the identified values does not explain, rms over rms: of all channels, of the chosen one, and the least that sensor noise allows.', [{name: 'all channels', color: 'orange', width: 2}, {name: 'chosen channel', color: 'blue'}, {name: 'noise floor', color: 'soft', dash: [5, 4]}], 300, 4);
   const i = g.name.indexOf(plan.axes[+$('channel').value].name);
   strips.gap.name('gap between simulation and measurement' + (i < 0 ? '' : `, ${g.name[i]}`));
   strips.gap.push([seconds(g.end_us), g.overall, i < 0 ? null : g.nrmse[i], g.noise_floor]);
