@@ -50,7 +50,7 @@ bool is_key(std::string_view key) {
          is_hexadecimal(key.substr(2 * kKeyPart + 2));
 }
 
-/// The one who had the lock has removed the file: it is another one by now, or none.
+/// Returns false if the previous owner of the lock has removed or replaced the file.
 bool is_still_named(int file, const std::string& path) {
   struct stat open {
   }, named{};
@@ -62,7 +62,7 @@ constexpr std::size_t aligned(std::size_t size) {
   return (size + 3) / 4 * 4;
 }
 
-/// The build id among the notes of a segment.
+/// Returns the build id among the notes of a segment; empty if it is missing.
 std::string_view build_id_in(const char* at, std::size_t size) {
   while (size >= sizeof(ElfW(Nhdr))) {
     ElfW(Nhdr) note{};
@@ -79,7 +79,7 @@ std::string_view build_id_in(const char* at, std::size_t size) {
   return {};
 }
 
-/// The first object is the program itself.
+/// Stores the build id of the first object, which is the program itself.
 int look(dl_phdr_info* info, std::size_t, void* out) {
   for (int i = 0; i < info->dlpi_phnum; ++i) {
     const ElfW(Phdr)& segment = info->dlpi_phdr[i];

@@ -28,26 +28,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kLongestRawLog_us = 86'400'000'000;  // it ends every day at least
+constexpr std::int64_t kLongestRawLog_us = 86'400'000'000;  // a raw log covers at most a day
 constexpr std::size_t kMaxTasks = 100'000;
-constexpr std::int64_t kFollows_us = 2 * 3'600'000'000;  // a later one may not be the next
-constexpr std::int64_t kMargin_us = 10'000'000;  // after its end: windows are late, nodes uneven
+constexpr std::int64_t kFollows_us = 2 * 3'600'000'000;  // longer logs are read for their end
+constexpr std::int64_t kMargin_us = 10'000'000;  // after the end, for late windows and nodes
 
-/// As a task finds it, from whatever folder.
+/// Returns the absolute path, which a task can open from any folder.
 std::string absolute(const std::string& path) {
   std::error_code error;
   const fs::path whole = fs::absolute(path, error);
   return error ? path : whole.lexically_normal().string();
 }
 
-/// Start of a raw log by its name; empty for another file.
+/// Returns the start of a raw log from its name; nullopt for other files.
 std::optional<std::int64_t> raw_start_us(const std::string& path) {
   const std::string name = fs::path(path).filename().string();
   const bool raw = name.ends_with(".lcmlog") || name.ends_with(".lcmlog.zst");
   return raw ? daemon::read_utc_stamp(name) : std::nullopt;
 }
 
-/// Times of the samples in a log, from them; problems if it cannot be read.
+/// Reads the times of the samples in a log. Returns the problems.
 std::vector<std::string> read_times(const daemon::Config& config, ArchiveLog& log) {
   daemon::ReplaySurvey survey(config, true);
   survey.add(log.path);
@@ -93,7 +93,7 @@ std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us) {
 
 constexpr const char* kManifest = "fleet manifest";
 
-/// Names go into a file of lines and tabs.
+/// Rejects names that a file of lines and tabs cannot hold.
 std::string problem_of_name(const std::string& name) {
   return name.find_first_of("\t\n") == std::string::npos
              ? ""
@@ -123,7 +123,7 @@ std::vector<ArchiveLog> archive_logs(const std::vector<std::string>& places,
     if (out[i].path == out[i - 1].path) problems.push_back(out[i].path + ": is named twice");
     out[i - 1].end_us = std::min(out[i - 1].end_us, out[i].start_us + daemon::kSecond_us);
   }
-  // A damaged one keeps its day: its task says what is wrong.
+  // A damaged log keeps its day; its task reports the damage.
   for (ArchiveLog& log : out)
     if (log.end_us - log.start_us > kFollows_us && raw_start_us(log.path))
       (void)read_times(config, log);

@@ -33,18 +33,18 @@
 namespace framewatch::fleet {
 namespace {
 
-/// What became of a task.
+/// The result of a task.
 struct Reidentified {
-  std::string problem;             ///< why there is no output; empty: there is
-  std::vector<std::string> notes;  ///< damage and what else the reader should know
-  int passes = 1;                  ///< over the logs: tuned on first, then estimated
-  std::int64_t windows = 0;        ///< that were published, those of the warm-up too
-  std::int64_t instants = 0;       ///< of the common grid
+  std::string problem;             ///< why there is no output; else empty
+  std::vector<std::string> notes;  ///< damage and other remarks
+  int passes = 1;                  ///< over the logs: first to tune, last to estimate
+  std::int64_t windows = 0;        ///< published, including the warm-up
+  std::int64_t instants = 0;       ///< on the common grid
   std::int64_t damaged_bytes = 0;
   double measured_s = 0;  ///< sensor time that was read
 };
 
-constexpr double kAfter_s = 10;  // until the last window of the task is out
+constexpr double kAfter_s = 10;  // until the last window of the task is published
 constexpr std::size_t kMaxNotes = 20;
 
 daemon::ReplaySpan span_of(const ArchiveTask& task) {
@@ -129,7 +129,7 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// Who does it: the job of Slurm, or of GNU parallel.
+/// Returns the id of the Slurm or GNU parallel job that runs this program; empty without one.
 std::string worker_name() {
   for (const char* variable : {"SLURM_ARRAY_JOB_ID", "SLURM_JOB_ID", "PARALLEL_SEQ"})
     if (const char* value = std::getenv(variable); value != nullptr) return value;
@@ -148,7 +148,7 @@ Json line_of(const ArchiveTask& task, const std::string& result) {
           {"worker", worker_name()}};
 }
 
-/// Done already: the line that was written then is there, and so is what it is about.
+/// Returns true if the output of the task exists with the JSON line that says so.
 bool is_done(const ArchiveTask& task) {
   std::string error;
   const auto text = daemon::read_text_file(task.out + ".json", error);
@@ -158,12 +158,12 @@ bool is_done(const ArchiveTask& task) {
          line.value("result", Json()) == "done";
 }
 
-/// Does the tasks of one manifest, whose configurations are read once.
+/// Runs the tasks of one manifest. Reads their configuration once.
 class Tasks {
  public:
   Tasks() : program_(program_identity()) {}
 
-  /// False when it failed.
+  /// Runs one task. Returns false if it failed.
   bool run(const ArchiveTask& task) {
     TaskLock lock;
     if (const std::string problem = lock.take(task.out + ".lock"); !problem.empty())
@@ -187,7 +187,7 @@ class Tasks {
     line["damaged_bytes"] = made.damaged_bytes;
     line["notes"] = made.notes;
     line["parameters"] = parameter_means(task.out + ".sqlite");
-    // Last, and whole: it says that the task is done.
+    // Written last and atomically, because this file marks the task as done.
     const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     const std::string problem = drivers::write_text_file(task.out + ".json", text);
     if (!problem.empty()) return fail(task, problem);
@@ -197,7 +197,7 @@ class Tasks {
   }
 
  private:
-  /// Reads the configuration, and compares what the manifest was made with.
+  /// Reads the configuration and checks that the manifest was made with it and this program.
   std::string problem_before(const ArchiveTask& task) {
     if (!config_ || config_->path != task.config) {
       std::vector<daemon::ConfigProblem> wrong;

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kOpenssl = "/usr/bin/openssl";
 constexpr std::chrono::milliseconds kLook{5};
 
-/// A folder of the call's own, for what must not be seen half-made.
+/// A temporary folder for files that must not be seen before they are complete.
 class WorkFolder {
  public:
   explicit WorkFolder(const fs::path& beside) {
@@ -71,7 +71,7 @@ std::string put(const std::string& path, const std::string& text) {
   return daemon::sha256_of_file(path).empty() ? path + ": cannot be written" : "";
 }
 
-/// Does one thing after the other, until one fails.
+/// Runs steps one after another until one fails.
 template <class... Steps>
 std::string in_turn(const Steps&... steps) {
   std::string problem;
@@ -85,7 +85,7 @@ bool is_address(const std::string& host) {
          ::inet_pton(AF_INET6, host.c_str(), bytes.data()) == 1;
 }
 
-/// Extensions of a certificate of a server, or of a client.
+/// Returns the certificate extensions of a server, or of a client if `hosts` is empty.
 std::string extensions(const std::string& name, const std::vector<std::string>& hosts) {
   std::string names;
   for (const std::string& host : hosts)

@@ -28,7 +28,7 @@ int refuse(const char* command, const std::string& why) {
   return daemon::kBadInput;
 }
 
-/// Tells servers to read users.conf anew. Empty, or which could not be told.
+/// Signals the servers to reload users.conf. Returns an empty text, or which server it failed for.
 std::string reload(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     std::string error;

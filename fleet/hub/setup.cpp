@@ -16,7 +16,7 @@ using nlohmann::json;
 constexpr std::int64_t kMiB = 1 << 20, kGiB = 1024 * kMiB;
 constexpr std::int64_t kSecond_ns = 1'000'000'000, kDay_ns = 86'400 * kSecond_ns;
 constexpr std::int64_t kLeast_bytes = 64 * kMiB;
-constexpr int kBuildings = 1000;  // that the sizes below are for
+constexpr int kBuildings = 1000;  // number of buildings for the sizes below
 
 struct Stream {
   const char* name;
@@ -89,7 +89,7 @@ json stream_config(const Stream& s, int replicas, int buildings) {
           {"allow_direct", s.is_read_directly}};
 }
 
-/// What a worker that died had taken is given again after ack_wait or later: events sooner.
+/// Messages of a worker that died are delivered again after ack_wait; events have a shorter wait.
 json consumer_config(const Stream& stream) {
   const std::int64_t wait_s = std::string_view(stream.name) == "FW_EVENT" ? 8 : 30;
   return {{"durable_name", stream.consumer},
@@ -110,8 +110,8 @@ std::string name_of(const HubPart& part) {
   return part.consumer.empty() ? part.stream : part.stream + "/" + part.consumer;
 }
 
-/// Empty, with the reason, when the hub refuses or says nothing that is understood. An answer that
-/// there is no such part is an object without "config".
+/// Returns nullopt and sets the reason when the hub refuses or its answer is not understood.
+/// Returns an object without "config" when the part does not exist.
 std::optional<json> asked(const AskHub& ask, const std::string& subject, const json& request,
                           std::string& error) {
   const auto answer = ask("$JS.API." + subject, request.is_null() ? "" : request.dump(), error);
@@ -132,12 +132,12 @@ std::optional<json> asked(const AskHub& ask, const std::string& subject, const j
   return std::nullopt;
 }
 
-/// "max_bytes 1 -> 2, ..." : of the values that matter.
+/// Returns the checked values that differ: "max_bytes 1 -> 2, ...".
 std::string differences(const json& is, const json& should_be) {
   std::string out;
   for (const auto& [key, wanted] : should_be.items()) {
     const auto found = is.find(key);
-    // A value that the server leaves out is none, false or nought.
+    // The server leaves out values that are null, false or zero.
     const bool absent = found == is.end();
     if (absent && (wanted == 0 || wanted == false)) continue;
     if (!absent && *found == wanted) continue;
@@ -152,7 +152,7 @@ std::string info_subject(const HubPart& part) {
                                : fmt::format("CONSUMER.INFO.{}.{}", part.stream, part.consumer);
 }
 
-/// The call that makes the part, or changes it when it is there.
+/// Returns the API call that creates the part, or changes it if it exists.
 std::pair<std::string, json> making(const HubPart& part, bool is_there) {
   const json config = json::parse(part.config);
   if (part.consumer.empty())

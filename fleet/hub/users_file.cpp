@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kList = "buildings";
 constexpr const char* kUsers = "users.conf";
 
-// Of the hub itself; a building may not be called so, since its certificate would be theirs.
+// Reserved for the hub: a building with such a name would have the certificate of a hub program.
 constexpr const char* kRoles[] = {"operator", "worker", "page", "admin"};
 
 constexpr const char* kBeginning =

@@ -39,7 +39,7 @@ using NatsMessage = std::unique_ptr<natsMsg, NatsDestroyer<natsMsg, natsMsg_Dest
 
 namespace {
 
-/// A message of the library as ours, and the other way round; null for want of memory.
+/// Converts a message of the library.
 Message message_of(natsMsg* from) {
   Message out;
   out.subject = natsMsg_GetSubject(from);
@@ -71,7 +71,7 @@ NatsMessage nats_message(const Message& from) {
   return out;
 }
 
-/// What the library says of a failure on this thread.
+/// Returns the text of `status` with the library's details on the last failure of this thread.
 std::string last_error(natsStatus status) {
   const char* detail = nats_GetLastError(nullptr);
   const std::string text = natsStatus_GetText(status);
@@ -82,8 +82,9 @@ constexpr const char* kOpenssl = "/usr/bin/openssl";
 constexpr std::chrono::milliseconds kPause{2};
 constexpr int kMaxLooks = 1000;
 
-/// "FILE expired: ..." when the certificate (PEM) is over, by openssl(1) and the host's clock; else
-/// empty, also when it cannot be read. A hub that refuses it says nothing that reaches us.
+/// Returns "FILE expired ..." when openssl(1) finds that the certificate (PEM) is over by the
+/// host's clock; else empty, also if it cannot be read. A hub that refuses it does not tell the
+/// client why.
 std::string expired(const std::string& certificate) {
   std::string error;
   auto process = daemon::ChildProcess::start(
@@ -99,7 +100,7 @@ std::string expired(const std::string& certificate) {
 }
 
 constexpr std::int64_t kMinWait_ms = 250, kMaxWait_ms = 5000;
-// A line that is dead without a word shows within 12 s; oftener would cost more than what is sent.
+// Finds a silently dead connection within 12 s. More pings would cost more than the messages.
 constexpr std::int64_t kPing_ms = 6000, kConnect_ms = 2000, kWrite_ms = 2000;
 constexpr int kPingsWithoutAnswer = 1;
 constexpr std::int64_t kAnew_us = 60'000'000;  // without a connection
@@ -127,11 +128,11 @@ struct NatsLink::State {
   std::atomic<int> listening{0};  ///< subscriptions whose thread may still call back
   std::int64_t open_again_us = INT64_MIN, seen_us = INT64_MIN;  ///< steady clock
 
-  mutable std::mutex mutex;  ///< guards what is below, also against the library's threads
+  mutable std::mutex mutex;  ///< guards the members below, also against the library's threads
   std::vector<Message> waiting;
   std::string trouble, certificate_trouble;
 
-  NatsConnection connection;  ///< last but one: its threads see everything above
+  NatsConnection connection;  ///< after the members above, which its threads use
   std::vector<NatsSubscription> subscriptions;
 
   void ring() {
@@ -191,7 +192,7 @@ struct NatsLink::State {
   }
 };
 
-/// Files are read anew: a certificate that was renewed is the one that is shown.
+/// Reads the files again, so that it uses a renewed certificate.
 std::string NatsLink::State::connect() {
   natsOptions* made = nullptr;
   if (const natsStatus s = natsOptions_Create(&made); s != NATS_OK) return last_error(s);
@@ -233,7 +234,7 @@ std::string NatsLink::State::connect() {
   const natsStatus status = natsConnection_Connect(&opened, made);
   connection.reset(opened);
   if (status == NATS_OK) on_connected(opened, this);
-  // Somebody who is refused now may be let in later.
+  // A client that is refused now may be admitted later.
   if (status != NATS_OK && status != NATS_NOT_YET_CONNECTED) closed = true;
   if (status == NATS_NOT_YET_CONNECTED)
     say("no server of it answers, or it lets this certificate not in");
@@ -243,7 +244,7 @@ std::string NatsLink::State::connect() {
   return "";
 }
 
-/// False when the library may still call back: then this must not be destroyed.
+/// Returns false when the library may still call back; then this object must not be destroyed.
 bool NatsLink::State::close() {
   if (connection) {
     natsConnection_Close(connection.get());
@@ -299,8 +300,8 @@ std::vector<Message> NatsLink::take() {
   (void)!::read(state_->wake.get(), &count, sizeof count);
   const std::int64_t now_us = daemon::steady_clock_us();
   if (is_connected() || state_->seen_us == INT64_MIN) state_->seen_us = now_us;
-  // The library gives up for good when it is refused twice, and never reads a certificate that was
-  // renewed. A building that was let in again is not to wait for somebody to start it anew.
+  // The library gives up for good after two refusals and never reads a renewed certificate. Opening
+  // a new connection lets an admitted building back in without a restart.
   const bool anew = state_->closed || now_us - state_->seen_us > kAnew_us;
   if (anew && now_us >= state_->open_again_us) {
     state_->open_again_us = now_us + kMaxWait_ms * 1000;

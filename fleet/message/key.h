@@ -10,7 +10,7 @@
 
 namespace framewatch::fleet {
 
-/// What identifies an event at the hub: made of its content, so that a repetition changes nothing.
+/// Identifies an event at the hub by its content, so that a repetition changes nothing.
 struct EventKey {
   std::string kind;
   std::int64_t id = 0, time_us = 0;
@@ -27,29 +27,29 @@ struct SummaryKey {
 
 EventKey event_key(const event_t& event);
 
-/// The keys as text (Nats-Msg-Id), <building>/event/<kind>/<id>/<time_us>/<state> and
-/// <building>/summary/<period_s>/<start_us>. A kind that has a slash or a control character keeps
-/// it as %XX.
+/// Return the keys as text (Nats-Msg-Id): <building>/event/<kind>/<id>/<time_us>/<state> and
+/// <building>/summary/<period_s>/<start_us>. Slashes and control characters in the kind become %XX.
 std::string message_key(std::string_view building, const EventKey& key);
 std::string message_key(std::string_view building, const SummaryKey& key);
-/// <building>/raw/<request>/<piece>
+/// Returns <building>/raw/<request>/<piece>.
 std::string raw_key(std::string_view building, std::string_view request, std::int64_t piece);
-/// <building>/<kind>/<time_us>, of what the hub keeps the newest of.
+/// Returns <building>/<kind>/<time_us>, for messages of which the hub keeps only the newest.
 std::string newest_key(std::string_view building, std::string_view kind, std::int64_t time_us);
 
-/// KEY~DIGITS, what is given to the hub as Nats-Msg-Id. The hub takes a message whose Nats-Msg-Id
-/// it has heard within minutes for a repetition, whoever sent it: so nobody who does not have the
-/// `secret` can say it before the building, and other content under the same key is another
-/// message.
+/// Returns KEY~DIGITS, the Nats-Msg-Id that the hub receives. The digits depend on the `secret` and
+/// the content. The hub drops a message whose Nats-Msg-Id it saw within the last minutes, from any
+/// sender; the seal keeps others from using the building's ids first, and makes other content under
+/// the same key a new message.
 std::string sealed_key(std::string_view key, std::string_view secret,
                        std::span<const std::uint8_t> content);
-/// The key alone, of what sealed_key() made or of a key.
+/// Removes the seal of sealed_key(). Returns other keys unchanged.
 std::string_view key_of_sealed(std::string_view sealed);
 
-/// Of any key: before its first slash, and what stands until the next. Empty when it is no key.
+/// The first two parts of any key.
 struct KeyParts {
   std::string building, kind;
 };
+/// Returns nullopt if `key` is not a key.
 std::optional<KeyParts> key_parts(std::string_view key);
 
 }  // namespace framewatch::fleet
