@@ -52,8 +52,8 @@ daemon::ReplaySpan span_of(const ArchiveTask& task) {
   return {0, length_us * 1e-6 + kAfter_s, task.warm_up_us};
 }
 
-/// Runs the logs of a task through an estimation into `path`, a database with the tables of a
-/// history, of the task's time alone. Whatever is intact of a damaged log is used.
+/// Runs the logs of a task through an estimation and writes the task's time to `path`, a database
+/// with the tables of a history. Uses the intact parts of damaged logs.
 Reidentified reidentify(const daemon::Config& config, const ArchiveTask& task,
                         const std::string& path) {
   Reidentified out;
@@ -105,9 +105,9 @@ constexpr const char* kMeans =
     " FROM summary JOIN parameter ON parameter.id = parameter"
     " WHERE period_s = (SELECT min(period_s) FROM period) GROUP BY parameter ORDER BY parameter";
 
-/// Every parameter of a database with the tables of a history, over all of its shortest periods:
-/// by name its unit, in how many windows it was observable, mean, standard error (root mean square
-/// of the windows' own), least and largest value. Null when the database cannot be read.
+/// Summarizes each parameter of a database with the tables of a history over all of its shortest
+/// periods, by name: unit, number of windows with a value, mean, standard error (root mean square
+/// of the windows' errors), least and largest value. Returns null if the database cannot be read.
 nlohmann::ordered_json parameter_means(const std::string& database) {
   daemon::SqliteFile file;
   if (!file.open_to_read(database)) return nullptr;

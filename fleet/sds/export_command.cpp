@@ -21,7 +21,7 @@ constexpr const char* kStretches =
     " WHERE ($1 = '' OR b.name = $1) AND ($2 = '' OR r.request = $2) AND r.pieces > 0"
     " GROUP BY b.id, r.request ORDER BY b.name, min(r.came)";
 
-/// Puts one stretch into the folders, and says so. False: it could not be.
+/// Writes one piece of samples into the folders and prints what it did. Returns false on failure.
 bool put(Database& database, const Database::Row& row, const std::string& root) {
   const std::string building = text_at(row, 0), request = text_at(row, 1);
   const auto say = [&](const std::string& text) {

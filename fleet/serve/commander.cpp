@@ -37,7 +37,7 @@ bool put_time(json& out, const CommandWords& words, std::string& why) {
 constexpr std::size_t kLongestAnswer = 500, kMaxBytes = 65'536;
 constexpr const char* kNobody = "503";
 
-/// Empty: done; else why not.
+/// Returns why the building did not obey; empty if it did.
 std::string answer_of(const Message& message) {
   if (message.header(header::kStatus) == kNobody) return "the building is away";
   if (message.bytes.size() > kMaxBytes) return "its answer is too long";

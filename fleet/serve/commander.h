@@ -16,9 +16,9 @@
 
 namespace framewatch::fleet {
 
-/// A command that a person gives, as it stands in the journal.
+/// A command of a person, as stored in the journal.
 struct CommandOrder {
-  std::string request;  ///< its name, by chance
+  std::string request;  ///< random id
   std::string who, verb;
   std::string content;  ///< JSON
   struct Target {
@@ -28,39 +28,40 @@ struct CommandOrder {
   std::vector<Target> targets;
 };
 
-/// The words of a command as they came with a request.
+/// The arguments of a command in a request.
 struct CommandWords {
   std::string verb, from_us, to_us, channels, id, comment;
 };
-/// The content of the command as JSON; empty with the reason: a verb that is none, a time or an
-/// event that is no number.
+/// Returns the content of the command as JSON. Returns nullopt and sets `why` if the verb is
+/// unknown or a time or event is not a number.
 std::optional<std::string> command_content(const CommandWords& words, std::string& why);
 
-/// The message to a building: docs/fleet.md. until_us: UTC, when it is void.
+/// Returns the message to a building (docs/fleet.md). until_us: UTC; void afterwards.
 Message command_message(const CommandOrder& order, const std::string& building,
                         const std::string& reply, std::int64_t until_us);
 
-/// What became of a command at one building.
+/// The result of a command at one building.
 struct CommandResult {
   std::string request;
   std::int64_t building = 0;  ///< in the database
   bool done = false;
-  std::string answer;  ///< why not; empty: done
+  std::string answer;  ///< why it was not done; empty if done
 };
 
-/// Sends commands to buildings and collects what they answer. Each is sent once: a building that
-/// does not answer in time, or is away, is a result too.
+/// Sends commands to buildings and collects the answers. Sends each command once; a building that
+/// does not answer in time yields a result too.
 class Commander {
  public:
   static constexpr std::size_t kMaxOrders = 64;
   static constexpr std::int64_t kWait_us = 10'000'000, kVoid_us = 30'000'000;
 
-  /// `tell` gets each result once, on the thread of step(). Both must outlive this.
+  /// tell: receives each result once, in the thread of step(). Both must outlive this.
   Commander(Link& link, std::function<void(const CommandResult&)> tell);
 
-  /// Any thread. False: too many wait.
+  /// Queues a command; may be called from any thread. Returns false if kMaxOrders wait.
   [[nodiscard]] bool give(CommandOrder order);
-  /// To be called often. steady_us: a clock that is never set; utc_us: the host's.
+  /// Sends queued commands and collects answers. Call it often. steady_us: monotonic clock. utc_us:
+  /// host clock.
   void step(std::int64_t steady_us, std::int64_t utc_us);
 
  private:
@@ -76,7 +77,7 @@ class Commander {
   std::function<void(const CommandResult&)> tell_;
   std::mutex mutex_;  ///< guards orders_
   std::deque<CommandOrder> orders_;
-  std::map<std::string, Waiting> waiting_;  ///< by the subject of the reply
+  std::map<std::string, Waiting> waiting_;  ///< by reply subject
   std::int64_t number_ = 0;
 };
 

@@ -53,9 +53,9 @@ constexpr const char* kAnswers =
     " JOIN building b ON b.id = a.building WHERE a.request = ANY($1)"
     " AND ($2 = '' OR b.name = $2)) o WHERE place <= {} ORDER BY request, place";
 
-/// Writes a command into the journal before it is sent, and finds whom it is for. `building`: a
-/// name, or "all": every one that is not retired. False, with the reason, when it is not in the
-/// journal: then it must not be sent.
+/// Stores a command in the journal and finds its target buildings. building: a name, or "all" for
+/// every building that is not retired. Returns false and sets the reason if it could not be stored;
+/// then it must not be sent.
 bool note_order(Database& database, const std::string& building, CommandOrder& order,
                 std::string& why) {
   const auto targets = database.query(kTargets, {building});
@@ -76,15 +76,15 @@ bool note_order(Database& database, const std::string& building, CommandOrder& o
   return noted;
 }
 
-/// Writes what became of it. False: the database did not take it.
+/// Stores the result of a command. Returns false if the database fails.
 bool note_result(Database& database, const CommandResult& result) {
   return database.run(kPutResult, {result.request, std::to_string(result.building),
                                    result.done ? "true" : "false", result.answer});
 }
 
-/// The newest 200 commands of `building` (empty: of all): [{"request", "came_us", "who", "verb",
-/// "content": {}, "buildings": n, "done", "refused", "waiting": of them, "answers": [{"building",
-/// "came_us", "done", "answer"}]: the first 50, those that did not obey first}].
+/// Returns the newest 200 commands of `building` (empty: of all): [{"request", "came_us", "who",
+/// "verb", "content": {}, "buildings": n, "done": n, "refused": n, "waiting": n, "answers":
+/// [{"building", "came_us", "done", "answer"}]}]. Lists 50 answers, refusals first.
 std::string journal_json(Database& database, const std::string& building) {
   const auto commands =
       database.query(fmt::format(kCommands, sql_us("j.came"), kMaxCommands), {building});
@@ -130,7 +130,7 @@ PageAnswer refuse(unsigned code, const std::string& why) {
   return {code, json{{"problem", why}}.dump(-1, ' ', true, json::error_handler_t::replace), kJson};
 }
 
-/// An answer of a view: 503 when the database said nothing, 404 when nothing is there.
+/// Returns the answer of a view: 503 if the database failed, 404 if nothing was found.
 PageAnswer view(std::string text) {
   const unsigned code = text == R"({"problem":"no such building"})" ? 404
                         : text.starts_with(R"({"problem")")         ? 503
@@ -161,7 +161,7 @@ DatabasePool::Lent DatabasePool::lend() {
   }
   if (!database) database = std::make_unique<Database>();
   if (database->is_open() || !database->open(where_)) return {*this, std::move(database)};
-  // The tables are those of this program, whoever began first.
+  // Several programs may start at once; the tables match this program afterwards.
   if (!upgrade(*database).empty() ||
       !database->execute(fmt::format("SET statement_timeout = '{}'", kLongest)))
     database->close();
@@ -169,7 +169,7 @@ DatabasePool::Lent DatabasePool::lend() {
 }
 
 DatabasePool::Lent::~Lent() {
-  if (!database_->is_open()) return;  // the next one opens anew
+  if (!database_->is_open()) return;  // the next lend() opens a new one
   const std::lock_guard<std::mutex> lock(pool_.mutex_);
   pool_.free_.push_back(std::move(database_));
 }
@@ -211,7 +211,7 @@ PageAnswer FleetPages::me(const PageRequest& r) const {
           kJson};
 }
 
-/// 204 to who has this version already. What changes all the time is no part of a version.
+/// Answers 204 if the viewer has this version. The version excludes values that always change.
 PageAnswer FleetPages::overview(const PageRequest& r) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::int64_t now_us = daemon::steady_clock_us();

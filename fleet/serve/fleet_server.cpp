@@ -99,7 +99,7 @@ class FleetServer::Implementation {
     return daemon::answer(guard_, c, code, text + "\n", daemon::kPlainText);
   }
 
-  /// Who asks; null: nobody that may. Where nobody is named everybody of this machine may look.
+  /// Returns the person who asks; nullptr if not admitted. Without people, this machine may view.
   const Person* person_of(const daemon::WebRequest& r) const {
     static const Person kAnybody{"somebody on this machine", Role::viewer, ""};
     if (settings_.people.all().empty()) return settings_.web.local() ? &kAnybody : nullptr;
@@ -131,7 +131,7 @@ class FleetServer::Implementation {
     return daemon::answer(guard_, c, made.code, made.text, made.type.c_str());
   }
 
-  /// Replaces the token in the address by a cookie that scripts cannot read.
+  /// Replaces the token in the address with a cookie that scripts cannot read.
   MHD_Result exchange(MHD_Connection* c, const std::string& token) {
     MHD_Response* response = MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
     if (!response) return MHD_NO;

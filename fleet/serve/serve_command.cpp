@@ -30,7 +30,7 @@ namespace {
 constexpr const char* kServe = "fleet serve";
 constexpr std::chrono::milliseconds kStep{50};
 
-/// The hub's side, where there is one.
+/// The connection to the hub, if hubs are given.
 struct Desk {
   std::unique_ptr<NatsLink> link;
   std::unique_ptr<Commander> commander;

@@ -109,8 +109,8 @@ struct Database::Connection {
 Database::Database() : connection_(std::make_unique<Connection>()) {}
 Database::~Database() = default;
 
-/// The first line of `why` is the reason; what follows is advice. SQLSTATE: class 22 data
-/// exception, 23 integrity constraint.
+/// Stores the first line of `why` as the error; further lines are advice. SQLSTATE class 22 is a
+/// data exception, 23 an integrity constraint.
 bool Database::fail(const char* why, const char* sql_state) {
   const std::string_view state = sql_state == nullptr ? "" : sql_state;
   of_values_ = state.starts_with("22") || state.starts_with("23");
@@ -202,7 +202,7 @@ bool Database::run_each(const std::string& sql, const std::vector<std::vector<Sq
   std::string why = sent ? "" : PQerrorMessage(pg);
   std::string state;
   bool well = sent;
-  // Every statement's results end with a null pointer; the synchronisation ends them all.
+  // The results of each statement end with a null pointer, all results with the synchronization.
   for (int nothing = 0; is_open() && nothing < 2;) {
     const Result result(PQgetResult(pg), &PQclear);
     if (!result) {

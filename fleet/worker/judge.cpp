@@ -22,7 +22,7 @@ constexpr std::int64_t kMaxPieces = 100'000;
 constexpr std::size_t kLongestWhy = 1000;
 constexpr std::size_t kDigestDigits = 64;
 
-/// Kinds of which the hub keeps the newest, with their types.
+/// Kinds of which the hub keeps only the newest message, with their types.
 struct NewestKind {
   const char *kind, *type;
 };
@@ -47,7 +47,7 @@ bool is_request_name(std::string_view text) {
   });
 }
 
-/// One message on its way into the batch.
+/// Checks one message.
 class Judgement {
  public:
   Judgement(const Message& message, std::int64_t hub_us, FleetBatch& batch)
@@ -84,7 +84,7 @@ class Judgement {
   void refuse(std::string reason) { other(std::move(reason)); }
   void unknown() { other(""); }
 
-  /// The content as a type of ours; else it goes where it belongs.
+  /// Decodes the content. Returns nullopt after adding the message to `others` if it fails.
   template <typename Type>
   std::optional<Type> taken(const char* type) {
     if (type_ != type) {
@@ -94,7 +94,7 @@ class Judgement {
     auto message = drivers::decoded<Type>(content_);
     if (message) return message;
     const auto print = drivers::fingerprint(content_);
-    // A newer building does not stop the fleet.
+    // A newer program in a building must not stop the others.
     if (print && drivers::known_type(*print) == nullptr)
       unknown();
     else

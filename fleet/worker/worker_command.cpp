@@ -68,7 +68,7 @@ WorkerTime now() {
   return {daemon::steady_clock_us(), daemon::host_clock_us()};
 }
 
-/// What changes is said at once, counts once a minute.
+/// Logs changes at once and counts once a minute.
 class WorkerLog {
  public:
   explicit WorkerLog(bool quiet) : quiet_(quiet) {}

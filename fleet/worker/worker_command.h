@@ -10,18 +10,18 @@
 
 namespace framewatch::fleet {
 
-/// A day of an inventory (docs/fleet.md): what the building's history has of it.
+/// A day of an inventory (docs/fleet.md): the content of the building's history.
 struct InventoryDay {
   std::int64_t from_us = 0;
   DayCounts counts;
 };
 
-/// Days of an inventory, ascending; empty when it is none, or names more than there can be.
+/// Parses an inventory into ascending days. Returns an empty list if it is malformed or too long.
 std::vector<InventoryDay> inventory_days(std::string_view json);
 
-/// Begins of the days of which the database has fewer events or periods than the building's newest
-/// inventory says, the newest first; the inventory's last day is not over and does not count.
-/// Empty: the database is away.
+/// Returns the starts of days of which the database has fewer events or periods than the building's
+/// newest inventory, newest first. Ignores the last day, which is not over. Returns nullopt if the
+/// database fails.
 std::optional<std::vector<std::int64_t>> missing_days(FleetStore& store,
                                                       const std::string& building);
 
@@ -32,7 +32,7 @@ struct WorkerArguments {
   bool quiet = false;
 };
 
-/// framewatch fleet worker: runs until SIGINT or SIGTERM.
+/// Runs `framewatch fleet worker` until SIGINT or SIGTERM. Returns the exit status.
 int worker_command(const WorkerArguments& arguments);
 
 }  // namespace framewatch::fleet
