@@ -11,7 +11,6 @@ namespace framewatch::fleet {
 // fleet_command_line.cpp: archives, the uplink of a building, and the worker of a hub.
 void add_manifest(daemon::CommandList& commands);
 void add_task(daemon::CommandList& commands);
-
 void add_uplink(daemon::CommandList& commands);
 void add_worker(daemon::CommandList& commands);
 

@@ -28,7 +28,7 @@ std::string answer(const std::string& why) {
   return out.dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
-/// A request is a file's name too.
+/// A request id is also a file name.
 bool is_request(const std::string& request) {
   const auto allowed = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
@@ -37,7 +37,7 @@ bool is_request(const std::string& request) {
          std::all_of(request.begin(), request.end(), allowed);
 }
 
-/// Empty, with the reason, when the command names no stretch of time.
+/// Returns the time range of a command. Returns nullopt and sets `why` if it is missing or invalid.
 std::optional<TimeRange> range_of(const json& document, std::int64_t longest_us, std::string& why) {
   TimeRange out;
   if (!document.is_object()) {
@@ -127,7 +127,7 @@ std::string CommandDesk::carry_out(std::string_view verb, const Message& command
   return {};
 }
 
-/// Who gave the command stands before what the message says of itself.
+/// Replaces the author in the message with the person who gave the command.
 std::string CommandDesk::acknowledge(const Message& command) {
   auto request = drivers::decoded<acknowledge_t>(command.bytes);
   if (!request) return "no acknowledge_t";

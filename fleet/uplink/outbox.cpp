@@ -154,7 +154,7 @@ std::vector<TimeRange> united(std::vector<TimeRange> ranges) {
   return out;
 }
 
-/// A database that was set aside is another file afterwards.
+/// Opens the database again if it was replaced by another file.
 std::string Outbox::open() {
   const std::string path = daemon::summary_file(directory_);
   struct ::stat now {};
@@ -211,7 +211,7 @@ std::string Outbox::look(SentStore& sent, Waiting& out) {
   return {};
 }
 
-/// Both tables in the order of their keys, step by step.
+/// Compares both tables in the order of their keys.
 void Outbox::look_for_events(SentStore& sent, Waiting& out) {
   SqliteStatement all = file_.prepare(
       "SELECT kind, id, time_us, state FROM event"
@@ -243,8 +243,8 @@ void Outbox::look_for_events(SentStore& sent, Waiting& out) {
   }
 }
 
-/// A period is over when a later window has been stored. One that grew afterwards, because the
-/// sensors' clock was set back, is sent again when it is closed for good.
+/// Finds closed periods. A period is closed when a later window is stored. If it grows afterwards,
+/// because the sensors' clock was set back, it is sent again.
 void Outbox::look_for_periods(SentStore& sent, std::int64_t period_s, const TimeRange& time,
                               Waiting& out) {
   constexpr const char* kRange = " WHERE period_s = ? AND start_us >= ? AND start_us < ?";

@@ -82,7 +82,7 @@ RawSender::RawSender(std::string directory, std::string building, double kbit_s,
       store_(store),
       exporter_(std::move(exporter)) {}
 
-/// A file that is whole from before goes on; one that is made anew is sent from its beginning.
+/// Continues with a complete file from before; sends a new file from its beginning.
 void RawSender::begin() {
   const std::vector<RawRequest> all = store_.raw_requests();
   if (all.empty()) return;
@@ -116,7 +116,7 @@ void RawSender::give_up(const std::string& why) {
   state_ = State::giving_up;
 }
 
-/// outcome: empty: every piece has arrived.
+/// Ends the request. outcome: the problem; empty if all pieces arrived.
 void RawSender::finish(const std::string& outcome) {
   trouble_ = outcome;
   (void)store_.conclude(request_.request,

@@ -15,8 +15,8 @@ constexpr int kMaxDoublings = 5;
 
 using nlohmann::json;
 
-// JetStream says 503 too when a stream (10077) or the account (10023) is full; its own code tells
-// them apart.
+// JetStream also answers 503 when a stream (10077) or the account (10023) is full; err_code has the
+// difference.
 constexpr std::array<std::int64_t, 2> kFull{10077, 10023};
 
 std::int64_t number_of(const json& object, const char* name) {
@@ -40,7 +40,7 @@ Verdict refusal_of(const json& error) {
 }  // namespace
 
 bool SendWindow::silent(std::int64_t now_us) const {
-  // What was refused was answered, and is not due.
+  // Refused messages were answered and are not due yet.
   return open_.size() > refused_ && now_us - heard_us_ > kSilent_us;
 }
 

@@ -102,7 +102,7 @@ void Uplink::hear_answer(std::int64_t number, const Message& answer, Instant now
   }
   ++refused_;
   refusal_ = verdict.why;
-  // Without a leader nobody takes anything: that is a hub that does not answer.
+  // A stream without a leader counts as a hub that does not answer.
   if (verdict.code != Verdict::kUnavailable)
     (void)window_.refused(number, now.steady_us, kRefused_us);
 }
@@ -126,8 +126,8 @@ void Uplink::note_acknowledged(const Outgoing& done, bool duplicate) {
   if (done.event || done.summary) unstored_keys_.insert(done.message.header(header::kKey));
 }
 
-/// A hub that lost its power has lost what it acknowledged last: a server gives data to the disk
-/// every two minutes. What counts is when the connection was lost, not how long ago that is.
+/// Forgets the newest acknowledgements after a new connection: a hub that lost power has lost them,
+/// because a server writes to the disk every two minutes.
 void Uplink::begin_connection() {
   if (!store_.forget_newest(kAgainAfterLoss_us)) return;
   rewind_ = false;
@@ -186,7 +186,7 @@ void Uplink::say_inventory(Instant now) {
   if (!text.empty()) newest_.set_text("inventory", "json", text);
 }
 
-/// The file that runs, not one that was changed since.
+/// Sends the configuration file if it is the one that the daemon runs with.
 void Uplink::say_config() {
   const std::string& runs = newest_.config_sha256();
   if (!settings_.fleet.send_config || runs.empty() || runs == config_sent_) return;
@@ -196,7 +196,8 @@ void Uplink::say_config() {
   if (text && daemon::sha256(*text) == runs) newest_.set_text("config", "toml", *text);
 }
 
-/// Events, heartbeat and the like, newest summaries, older ones, raw samples.
+/// Fills the window in the order: events, newest messages, newest summaries, older ones, raw
+/// samples.
 void Uplink::fill(Instant now) {
   const auto takes = [&] { return window_.takes(now.steady_us) && !waits_for_store(); };
   while (!live_.empty() && takes()) {
@@ -232,7 +233,7 @@ bool Uplink::add_event(const event_t& event, Instant now) {
   return add(std::move(out), now);
 }
 
-/// One period; false when none may go now.
+/// Adds one period. Returns false if none may be sent now.
 bool Uplink::fill_periods(Instant now) {
   if (next_period_ >= waiting_.periods.size() ||
       window_.summaries() >= SendWindow::kMaxMessages / 2)

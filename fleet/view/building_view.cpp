@@ -33,7 +33,7 @@ constexpr const char* kNewestEvents =
     "SELECT time_us, since_us, id, state, severity, kind, place, value, std_error, unit, message"
     " FROM event WHERE building = (SELECT id FROM building WHERE name = $1)"
     " ORDER BY time_us DESC LIMIT 200";
-// Of a day, newest first. Partitions are left out by the constant limit alone.
+// The last day, newest first. Only the constant limit makes PostgreSQL skip partitions.
 constexpr const char* kDayOfPeriods =
     "SELECT start_us, period_s, config, n, median, std_error FROM summary"
     " WHERE building = (SELECT id FROM building WHERE name = $1) AND period_s IN (60, 600)"
@@ -47,7 +47,7 @@ constexpr const char* kStretches =
     " FROM raw_piece WHERE building = (SELECT id FROM building WHERE name = $1)"
     " GROUP BY request ORDER BY max(came) DESC LIMIT 50";
 
-/// Messages that the hub keeps the newest of; those that cannot be read are absent.
+/// The newest messages of a building; nullopt where missing or unreadable.
 struct NewestOf {
   std::optional<service_t> service;
   std::optional<status_t> status;
@@ -105,7 +105,7 @@ json events_json(const Rows& rows) {
   return out;
 }
 
-/// Parameters with the newest period in which each was observable.
+/// Returns the parameters, each with the newest period in which it was observable.
 json parameters_json(const NewestOf& newest, const Rows& periods) {
   json out = json::array();
   if (!newest.table) return out;
@@ -198,8 +198,8 @@ struct Point {
   double median = kNone, q1 = kNone, q3 = kNone, std_error = kNone;
 };
 
-// The place of a parameter depends on the configuration that the period was identified with: it is
-// looked up once for each.
+// The index of a parameter depends on the configuration of the period, so it is looked up once for
+// each configuration.
 constexpr const char* kPoints =
     "SELECT start_us, n[i], median[i], q1[i], q3[i], std_error[i], unit FROM ("
     " SELECT config AS of, unit[array_position(name, $2)], array_position(name, $2) AS i"
@@ -212,7 +212,7 @@ constexpr const char* kLengths =
     " WHERE building = (SELECT id FROM building WHERE name = $1) AND period_s = p"
     " AND start_us >= $2 AND start_us < $3) ORDER BY p";
 
-/// The finest period that is there and gives no more points than can be drawn; else the longest.
+/// Returns the finest stored period that gives at most kMaxPoints points; else the longest.
 int best_period(Database& database, const SeriesRequest& r) {
   const auto rows =
       database.query(kLengths, {r.building, std::to_string(r.from_us), std::to_string(r.to_us)});

@@ -28,13 +28,13 @@ double median_of(std::vector<double> values) {
 
 using daemon::kSecond_us;
 
-/// By the kind of parameter_table_t, which 2 and 3 are of damping.
+/// Kinds 2 and 3 of parameter_table_t are damping.
 bool is_stiffness(std::int32_t kind) {
   return kind != 2 && kind != 3;
 }
 
-// A building's rows are found by the primary key; the limits are constants, so that no other month
-// is looked at. Damping, which comes last, is left out.
+// Finds the rows of a building by the primary key. Constant limits make PostgreSQL skip other
+// months. Leaves out damping, which comes last.
 constexpr const char* kPeriodRows =
     "SELECT b.id, s.config, s.start_us, s.n[1:{6}], s.median[1:{6}], s.std_error[1:{6}]"
     " FROM unnest(ARRAY[{0}]::int[]) b(id) JOIN LATERAL ("
@@ -66,8 +66,8 @@ struct Gathered {
   std::string name, unit;
   std::vector<float> medians[2], errors[2];
 };
-/// Of one building: parameters in the order in which they came. `places`: by configuration the
-/// place of each of its entries in `values`; -1: of no stiffness.
+/// The parameters of one building in the order of their first period. places: by configuration, the
+/// index of each of its parameters in `values`; -1 for damping.
 struct Side {
   std::vector<Gathered> values;
   std::map<std::string, std::vector<int>> places;
@@ -146,7 +146,7 @@ bool PeriodReader::read_names(const std::string& ids, std::size_t& stiffnesses) 
 
 namespace {
 
-/// Adds the values of a period, at the places that its configuration has them.
+/// Adds the values of a period. places: of its configuration (Side).
 void gather(Side& side, const std::vector<int>& places, const Database::Row& row, int which) {
   const auto n = integers_of(*row[3]);
   const auto median = reals_of(*row[4]), error = reals_of(*row[5]);

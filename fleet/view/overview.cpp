@@ -26,14 +26,14 @@ Urgency urgency_of(const BuildingState& state, const event_t& event) {
 
 using nlohmann::json;
 
-constexpr int kMaxNewEvents = 1000;  // of a building after its heartbeat
+constexpr int kMaxNewEvents = 1000;  // of each building after its heartbeat
 
 constexpr const char* kHeartbeats =
     "SELECT b.id, b.name, b.title, b.place, b.latitude, b.longitude, {}, {}, n.content, {}"
     " FROM building b LEFT JOIN newest n ON n.building = b.id AND n.kind = 'service'"
     " WHERE CASE WHEN $1 = '' THEN NOT b.retired ELSE b.name = $1 END ORDER BY b.name";
-// Those that came with the heartbeat too: which of them was first is not known, and an event that
-// the heartbeat has already changes nothing.
+// Includes events that came at the same time as the heartbeat, because their order is unknown. An
+// event that the heartbeat already has changes nothing.
 constexpr const char* kNewEvents =
     "SELECT b.id, e.id, e.state, e.severity, e.kind, e.place, e.since_us, e.time_us, e.message"
     " FROM building b LEFT JOIN newest n ON n.building = b.id AND n.kind = 'service'"
@@ -81,7 +81,7 @@ event_t event_of(const Database::Row& row) {
 
 using Index = std::map<std::int64_t, std::size_t>;  ///< places in the overview by building
 
-/// What a person here had acknowledged.
+/// Notes events that a person acknowledged on this page.
 void note_orders(Overview& overview, const Index& index, const Rows& orders) {
   for (const Database::Row& row : orders) {
     const json content = json::parse(text_at(row, 1), nullptr, false);
@@ -93,7 +93,7 @@ void note_orders(Overview& overview, const Index& index, const Rows& orders) {
   }
 }
 
-/// What somebody had acknowledged, there or here, as the buildings say.
+/// Notes events that the buildings report as acknowledged.
 void note_acknowledged(Overview& overview, const Index& index, const Rows& said) {
   for (const Database::Row& row : said) {
     const auto at = index.find(integer_at(row, 0));
