@@ -118,25 +118,26 @@ std::optional<ArchiveTask> read_manifest_line(std::string_view line, std::string
     return std::nullopt;
   };
   if (words.size() <= kWordsBeforeLogs)
-    return wrong(fmt::format("{} words between tabs, a task has {} and its logs", words.size(),
+    return wrong(fmt::format("{} words between tabs; a task has {} and its logs", words.size(),
                              kWordsBeforeLogs));
   ArchiveTask task;
   const auto number = drivers::parse_integer(words[0]);
   if (!number || *number < 1 || *number > INT_MAX)
-    return wrong(words[0] + ": is no number of a task, from 1");
+    return wrong(words[0] + ": is not the number of a task, from 1");
   task.number = static_cast<int>(*number);
-  if (!is_key(words[1])) return wrong(words[1] + ": is no key, three times 12 hexadecimal digits");
+  if (!is_key(words[1]))
+    return wrong(words[1] + ": is not a key: expected three groups of 12 hexadecimal digits");
   task.key = words[1];
   task.config = words[2];
   task.out = words[3];
   std::int64_t* const times[] = {&task.warm_up_us, &task.from_us, &task.to_us};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto time_us = drivers::parse_integer(words[4 + i]);
-    if (!time_us) return wrong(words[4 + i] + ": is no time in microseconds");
+    if (!time_us) return wrong(words[4 + i] + ": is not a time in microseconds");
     *times[i] = *time_us;
   }
   if (task.warm_up_us > task.from_us || task.from_us >= task.to_us)
-    return wrong("the times of the warm-up, of the begin and of the end are not in order");
+    return wrong("the times must be in the order warm-up, start, end");
   if (task.config.empty() || task.out.empty()) return wrong("a name is empty");
   task.logs.assign(words.begin() + kWordsBeforeLogs, words.end());
   return task;
@@ -164,7 +165,7 @@ std::optional<std::vector<ArchiveTask>> read_manifest(const std::string& path,
     at = end + 1;
   }
   if (out.empty()) {
-    problem = path + ": holds no task";
+    problem = path + ": has no task";
     return std::nullopt;
   }
   return out;

@@ -70,7 +70,7 @@ void add_folder(const std::string& folder, std::vector<ArchiveLog>& out,
     out.push_back({absolute(log.path), log.start_us, log.start_us + kLongestRawLog_us});
     ++taken;
   }
-  if (taken == 0) problems.push_back(folder + ": holds no raw log that is closed");
+  if (taken == 0) problems.push_back(folder + ": has no closed raw log");
 }
 
 void add_file(const std::string& path, const daemon::Config& config, std::vector<ArchiveLog>& out,
@@ -97,7 +97,7 @@ constexpr const char* kManifest = "fleet manifest";
 std::string problem_of_name(const std::string& name) {
   return name.find_first_of("\t\n") == std::string::npos
              ? ""
-             : name + ": a tab or a line's end in a name";
+             : name + ": a name must not have a tab or line break";
 }
 
 }  // namespace
@@ -118,9 +118,9 @@ std::vector<ArchiveLog> archive_logs(const std::vector<std::string>& places,
   });
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out[i].path.find_first_of("\t\n") != std::string::npos)
-      problems.push_back(out[i].path + ": a tab or a line's end in a name");
+      problems.push_back(out[i].path + ": a name must not have a tab or line break");
     if (i == 0) continue;
-    if (out[i].path == out[i - 1].path) problems.push_back(out[i].path + ": is named twice");
+    if (out[i].path == out[i - 1].path) problems.push_back(out[i].path + ": is given twice");
     out[i - 1].end_us = std::min(out[i - 1].end_us, out[i].start_us + daemon::kSecond_us);
   }
   // A damaged log keeps its day; its task reports the damage.
@@ -181,7 +181,7 @@ int manifest(const ManifestArguments& a) {
   const std::int64_t longest_s =
       config->history.value_or(daemon::HistorySettings{}).summary_s.back();
   if (a.hours * std::int64_t{3600} % longest_s != 0)
-    problems.push_back(fmt::format("--hours: {} h are no multiple of the longest summary, {} s",
+    problems.push_back(fmt::format("--hours: {} h must be a multiple of the longest summary, {} s",
                                    a.hours, longest_s));
   std::vector<ArchiveLog> logs = archive_logs(a.places, *config, problems);
   if (problems.empty()) add_digests(logs, problems);
@@ -194,7 +194,7 @@ int manifest(const ManifestArguments& a) {
                          std::llround(a.warm_up_s), making_of(program, config->sha256)};
   std::string text;
   for (const ArchiveTask& task : plan_tasks(plan, logs)) text += manifest_line(task);
-  if (text.empty()) return daemon::refuse(kManifest, "no log holds a sample");
+  if (text.empty()) return daemon::refuse(kManifest, "no log has a sample");
   std::error_code error;
   std::filesystem::create_directories(a.folder, error);
   if (error) return daemon::refuse(kManifest, a.folder + ": " + error.message());

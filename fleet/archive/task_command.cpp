@@ -60,7 +60,7 @@ Reidentified reidentify(const daemon::Config& config, const ArchiveTask& task,
   daemon::HistoryOutput history(config);
   const std::int64_t longest_us = history.longest_s() * daemon::kSecond_us;
   if (task.from_us % longest_us != 0 || task.to_us % longest_us != 0) {
-    out.problem = fmt::format("begin and end are no multiples of the longest summary, {} s",
+    out.problem = fmt::format("start and end must be multiples of the longest summary, {} s",
                               history.longest_s());
     return out;
   }
@@ -86,7 +86,7 @@ Reidentified reidentify(const daemon::Config& config, const ArchiveTask& task,
   out.notes = survey.notes();
   if (out.notes.size() > kMaxNotes) {
     out.notes.resize(kMaxNotes);
-    out.notes.push_back("what else is to be said is left out");
+    out.notes.push_back("further notes are left out");
   }
   out.windows = estimation.windows();
   out.instants = estimation.pipeline().counters().sample_sets;
@@ -206,7 +206,8 @@ class Tasks {
       if (!config_) return task.config + ": cannot be used";
     }
     if (!task.key.starts_with(making_of(program_, config_->sha256) + "-"))
-      return "program or configuration are not those of the manifest: make a new one";
+      return "the program or configuration has changed since the manifest: make a new one with "
+             "framewatch fleet manifest";
     return {};
   }
 

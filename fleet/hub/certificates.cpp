@@ -68,7 +68,7 @@ std::string moved(const std::string& from, const std::string& to) {
 
 std::string put(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;
-  return daemon::sha256_of_file(path).empty() ? path + ": cannot be written" : "";
+  return daemon::sha256_of_file(path).empty() ? path + ": cannot write" : "";
 }
 
 /// Runs steps one after another until one fails.
@@ -113,12 +113,12 @@ std::string Authority::path(const std::string& name) const {
 
 std::string Authority::make() const {
   if (!drivers::is_absent(path("ca.key")) || !drivers::is_absent(path("ca.pem")))
-    return path("ca.pem") + ": there is an authority already";
+    return path("ca.pem") + ": an authority exists already";
   const ::mode_t before = ::umask(077);
   const WorkFolder work(directory_);
   const std::string problem =
       !work.good()
-          ? directory_ + ": cannot be written"
+          ? directory_ + ": cannot write"
           : in_turn(
                 [&] {
                   return openssl({"req", "-x509", "-newkey", "ed25519", "-nodes", "-days",
@@ -136,7 +136,7 @@ std::string Authority::issue(const std::string& name, const std::vector<std::str
   const WorkFolder work(directory_);
   const std::string problem =
       !work.good()
-          ? directory_ + ": cannot be written"
+          ? directory_ + ": cannot write"
           : in_turn([&] { return make_request(name, work / "key", work / "csr"); },
                     [&] { return put(work / "ext", extensions(name, hosts)); },
                     [&] {
@@ -154,7 +154,7 @@ std::string Authority::issue(const std::string& name, const std::vector<std::str
 std::string Authority::sign(const std::string& building, const std::string& request,
                             const std::string& certificate) const {
   const WorkFolder work(directory_);
-  if (!work.good()) return directory_ + ": cannot be written";
+  if (!work.good()) return directory_ + ": cannot write";
   if (const std::string why = drivers::why_no_file(request); !why.empty())
     return fmt::format("{}: {}", request, why);
   return in_turn(
@@ -167,7 +167,7 @@ std::string Authority::sign(const std::string& building, const std::string& requ
         const auto subject = daemon::read_text_file(work / "subject", error);
         return subject == "subject=CN=" + building + "\n"
                    ? ""
-                   : fmt::format("{}: it must name CN={} and nothing else", request, building);
+                   : fmt::format("{}: its subject must be exactly CN={}", request, building);
       },
       [&] { return put(work / "ext", extensions(building, {})); },
       [&] {

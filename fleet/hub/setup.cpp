@@ -118,7 +118,7 @@ std::optional<json> asked(const AskHub& ask, const std::string& subject, const j
   if (!answer) return std::nullopt;
   json document = json::parse(*answer, nullptr, false);
   if (!document.is_object()) {
-    error = "what answers is no JetStream";
+    error = "the answer is not from JetStream";
     return std::nullopt;
   }
   const auto failure = document.find("error");
@@ -187,7 +187,7 @@ SetupOutcome set_up(const std::vector<HubPart>& parts, const AskHub& ask, bool o
     const std::string differs =
         is_there ? differences(*config, json::parse(part.config)) : "missing";
     if (differs.empty()) {
-      out.lines.push_back(name + ": as it should be");
+      out.lines.push_back(name + ": correct");
       continue;
     }
     ++out.changed;

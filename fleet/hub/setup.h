@@ -24,7 +24,7 @@ using AskHub = std::function<std::optional<std::string>(
 
 /// The result of setting up one hub.
 struct SetupOutcome {
-  std::vector<std::string> lines;  ///< one for each part: "FW_EVENT: as it should be", ...
+  std::vector<std::string> lines;  ///< one for each part: "FW_EVENT: correct", ...
   std::vector<std::string> problems;
   int changed = 0;  ///< parts that were created or changed, or would be with only_look
 };

@@ -171,7 +171,7 @@ struct NatsLink::State {
     auto& state = *static_cast<State*>(self);
     const char* why = nullptr;
     (void)natsConnection_GetLastError(connection, &why);
-    state.say(why == nullptr || *why == '\0' ? "the connection is lost" : why);
+    state.say(why == nullptr || *why == '\0' ? "connection lost" : why);
     state.ring();
   }
   static void on_closed(natsConnection*, void* self) {
@@ -237,7 +237,7 @@ std::string NatsLink::State::connect() {
   // A client that is refused now may be admitted later.
   if (status != NATS_OK && status != NATS_NOT_YET_CONNECTED) closed = true;
   if (status == NATS_NOT_YET_CONNECTED)
-    say("no server of it answers, or it lets this certificate not in");
+    say("no hub server answers, or the hub does not admit this certificate");
   else if (status != NATS_OK)
     say(last_error(status));
   for (const std::string& subject : subjects) listen(subject);

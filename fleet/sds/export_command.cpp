@@ -51,7 +51,7 @@ int export_command(const ExportArguments& a) {
     return daemon::refuse(kExport, problem);
   const auto rows = database.query(kStretches, {a.building, a.request});
   if (!rows) return daemon::refuse(kExport, database.error());
-  if (rows->empty()) return daemon::refuse(kExport, "no raw samples of this were fetched");
+  if (rows->empty()) return daemon::refuse(kExport, "no such raw samples were fetched");
   bool all = true;
   for (const Database::Row& row : *rows) all = put(database, row, a.root) && all;
   return all ? 0 : daemon::kFailed;

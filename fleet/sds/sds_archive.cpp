@@ -60,9 +60,9 @@ std::string parse(std::span<const std::uint8_t> bytes, std::map<Day, Samples>& d
     const int left = static_cast<int>(std::min<std::size_t>(buffer.size() - at, INT32_MAX));
     const int status = msr_parse(buffer.data() + at, left, &parsed, 0, 1, 0);
     const ParsedRecord record(parsed);
-    if (status != MS_NOERROR) return fmt::format("no miniSEED record at byte {}", at);
+    if (status != MS_NOERROR) return fmt::format("expected a miniSEED record at byte {}", at);
     if (record->sampletype != 'i' || !(record->samprate > 0))
-      return fmt::format("the record at byte {} has no integers", at);
+      return fmt::format("the record at byte {} does not hold integers", at);
     const auto* counts = static_cast<const std::int32_t*>(record->datasamples);
     for (std::int64_t i = 0; i < record->numsamples; ++i) {
       const std::int64_t time_us =
@@ -143,7 +143,7 @@ SdsOutcome add_to_sds(const std::string& root, std::span<const std::uint8_t> min
     if (out.problem.empty() && !there.empty() &&
         (there.size() > 1 || there.begin()->first != day ||
          there.begin()->second.rate_hz != added.rate_hz))
-      out.problem = "holds another channel, day or rate";
+      out.problem = "the existing file has another channel, day or rate";
     if (!out.problem.empty()) {
       out.problem = fmt::format("{}: {}", path, out.problem);
       return out;

@@ -26,7 +26,7 @@ constexpr std::size_t kLongestComment = 500, kLongestChannels = 20'000;
 bool put_time(json& out, const CommandWords& words, std::string& why) {
   const auto from = drivers::parse_integer(words.from_us), to = drivers::parse_integer(words.to_us);
   if (!from || !to || *from >= *to) {
-    why = "from_us and to_us must be whole numbers of us since 1970, the second above the first";
+    why = "from_us and to_us must be whole numbers of us since 1970, to_us after from_us";
     return false;
   }
   out["from_us"] = *from;
@@ -39,12 +39,12 @@ constexpr const char* kNobody = "503";
 
 /// Returns why the building did not obey; empty if it did.
 std::string answer_of(const Message& message) {
-  if (message.header(header::kStatus) == kNobody) return "the building is away";
-  if (message.bytes.size() > kMaxBytes) return "its answer is too long";
+  if (message.header(header::kStatus) == kNobody) return "the building is not connected";
+  if (message.bytes.size() > kMaxBytes) return "the building's answer is too long";
   const auto document =
       nlohmann::json::parse(message.bytes.begin(), message.bytes.end(), nullptr, false);
   if (!document.is_object() || !document.contains("ok") || !document["ok"].is_boolean())
-    return "its answer cannot be read";
+    return "the building's answer is malformed";
   if (document["ok"].get<bool>()) return {};
   const auto why = document.find("why");
   const std::string text = why != document.end() && why->is_string() ? why->get<std::string>() : "";
@@ -57,13 +57,13 @@ std::optional<std::string> command_content(const CommandWords& words, std::strin
   json out = json::object();
   if (std::find(std::begin(kCommandVerbs), std::end(kCommandVerbs), words.verb) ==
       std::end(kCommandVerbs)) {
-    why = "a verb is ping, acknowledge, minutes, resend or raw";
+    why = "verb must be ping, acknowledge, minutes, resend or raw";
     return std::nullopt;
   }
   if (words.verb == "acknowledge") {
     const auto id = drivers::parse_integer(words.id);
     if (!id || *id == 0 || words.comment.size() > kLongestComment) {
-      why = "id must be that of an event, and a comment has 500 bytes at most";
+      why = "id must be the id of an event, and comment at most 500 bytes";
       return std::nullopt;
     }
     out["id"] = *id;
@@ -131,7 +131,7 @@ void Commander::send(const CommandOrder& order, std::int64_t steady_us, std::int
   for (const CommandOrder::Target& target : order.targets) {
     const std::string reply = fmt::format("{}.{}", link_.inbox(), ++number_);
     if (!link_.publish(command_message(order, target.name, reply, utc_us + kVoid_us)))
-      tell_({order.request, target.id, false, "the hub is away"});
+      tell_({order.request, target.id, false, "the hub is not connected"});
     else
       waiting_[reply] = {order.request, target.id, steady_us + kWait_us};
   }

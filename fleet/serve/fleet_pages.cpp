@@ -72,7 +72,7 @@ bool note_order(Database& database, const std::string& building, CommandOrder& o
     return database.run(kPutOrder, {order.request, order.who, order.verb, order.content}) &&
            database.run_each(kPutTarget, rows);
   });
-  if (!noted) why = "the journal cannot be written: " + database.error();
+  if (!noted) why = "cannot write the journal: " + database.error();
   return noted;
 }
 
@@ -198,10 +198,11 @@ PageAnswer FleetPages::answer(const PageRequest& r) {
     return view(earthquakes_json(*lent, static_cast<int>(*days)));
   }
   if (r.path == "/journal.json") {
-    if (!is_building_or_none(r.argument("name"))) return refuse(400, "name is none of a building");
+    if (!is_building_or_none(r.argument("name")))
+      return refuse(400, "name must be the name of a building");
     return view(journal_json(*lent, r.argument("name")));
   }
-  return refuse(404, "not here");
+  return refuse(404, "not found");
 }
 
 PageAnswer FleetPages::me(const PageRequest& r) const {
@@ -232,7 +233,8 @@ PageAnswer FleetPages::overview(const PageRequest& r) {
 }
 
 PageAnswer FleetPages::building(const PageRequest& r) {
-  if (!is_building_name(r.argument("name"))) return refuse(400, "name is none of a building");
+  if (!is_building_name(r.argument("name")))
+    return refuse(400, "name must be the name of a building");
   const auto lent = pool_.lend();
   return view(building_json(*lent, r.argument("name")));
 }
@@ -240,11 +242,12 @@ PageAnswer FleetPages::building(const PageRequest& r) {
 PageAnswer FleetPages::series(const PageRequest& r) {
   const auto from = time_of(r, "from_us"), to = time_of(r, "to_us");
   const std::string parameter = r.argument("parameter"), period = r.argument("period_s");
-  if (!is_building_name(r.argument("name"))) return refuse(400, "name is none of a building");
+  if (!is_building_name(r.argument("name")))
+    return refuse(400, "name must be the name of a building");
   if (parameter.empty() || parameter.size() > kLongestParameter)
-    return refuse(400, "parameter must have 1 to 64 characters");
+    return refuse(400, "parameter must be 1 to 64 characters");
   if (!from || !to || *from >= *to)
-    return refuse(400, "from_us and to_us must be times in us since 1970, in this order");
+    return refuse(400, "from_us and to_us must be times in us since 1970, to_us after from_us");
   if (!period.empty() && period != "60" && period != "600" && period != "3600")
     return refuse(400, "period_s must be 60, 600 or 3600");
   const auto lent = pool_.lend();
@@ -255,13 +258,15 @@ PageAnswer FleetPages::series(const PageRequest& r) {
 PageAnswer FleetPages::earthquake(const PageRequest& r) {
   const auto time = time_of(r, "time_us");
   if (!time) return refuse(400, "time_us must be a time in us since 1970");
-  if (!is_building_or_none(r.argument("name"))) return refuse(400, "name is none of a building");
+  if (!is_building_or_none(r.argument("name")))
+    return refuse(400, "name must be the name of a building");
   const auto lent = pool_.lend();
   return view(earthquake_json(*lent, {*time, r.argument("name")}));
 }
 
 PageAnswer FleetPages::raw(const PageRequest& r) {
-  if (!is_building_name(r.argument("name"))) return refuse(400, "name is none of a building");
+  if (!is_building_name(r.argument("name")))
+    return refuse(400, "name must be the name of a building");
   const auto lent = pool_.lend();
   std::string why;
   const auto stretch = read_fetched(*lent, r.argument("name"), r.argument("request"), why);
@@ -275,13 +280,13 @@ PageAnswer FleetPages::command(const PageRequest& r) {
       fmt::format("page-{}", daemon::random_id()), r.who, r.argument("verb"), {}, {}};
   if (r.role != Role::operator_) {
     daemon::log(daemon::LogLevel::warning,
-                daemon::printable(fmt::format("{}, a viewer, asked for the command {} to {}", r.who,
+                daemon::printable(fmt::format("viewer {} may not give the command {} to {}", r.who,
                                               order.verb.substr(0, 32), building.substr(0, 32))));
-    return refuse(403, "only operators give commands");
+    return refuse(403, "only operators may give commands");
   }
-  if (!give_) return refuse(409, "this page was begun without a hub");
+  if (!give_) return refuse(409, "this page runs without a hub: start it with --hub");
   if (building != "all" && !is_building_name(building))
-    return refuse(400, "building must be the name of one, or all");
+    return refuse(400, "building must be the name of a building, or all");
   std::string why;
   const auto content =
       command_content({order.verb, r.argument("from_us"), r.argument("to_us"),
@@ -301,8 +306,9 @@ PageAnswer FleetPages::command(const PageRequest& r) {
   std::vector<CommandOrder::Target> targets = order.targets;
   if (!give_(std::move(order))) {
     for (const CommandOrder::Target& target : targets)
-      (void)note_result(*lent, {request, target.id, false, "too many commands at once"});
-    return refuse(503, "too many commands at once");
+      (void)note_result(
+          *lent, {request, target.id, false, "too many commands are waiting: try again later"});
+    return refuse(503, "too many commands are waiting: try again later");
   }
   return {202, json{{"request", request}, {"buildings", buildings}}.dump(), kJson};
 }
@@ -310,8 +316,9 @@ PageAnswer FleetPages::command(const PageRequest& r) {
 void FleetPages::note(const CommandResult& result) {
   const auto lent = pool_.lend();
   if (!note_result(*lent, result))
-    failures_(daemon::steady_clock_us(), fmt::format("the answer to {} is not in the journal: {}",
-                                                     result.request, lent->error()));
+    failures_(daemon::steady_clock_us(),
+              fmt::format("cannot store the answer to {} in the journal: {}", result.request,
+                          lent->error()));
 }
 
 }  // namespace framewatch::fleet

@@ -92,7 +92,7 @@ class FleetServer::Implementation {
     const std::string thrown = drivers::caught([&] { result = self.respond(c, method, url); });
     if (thrown.empty()) return result;
     self.failures_(daemon::steady_clock_us(), thrown);
-    return self.plain(c, 500, "an error of this program; its log says more");
+    return self.plain(c, 500, "internal error: see the log of framewatch fleet serve");
   }
 
   MHD_Result plain(MHD_Connection* c, unsigned code, const std::string& text) {
@@ -101,7 +101,7 @@ class FleetServer::Implementation {
 
   /// Returns the person who asks; nullptr if not admitted. Without people, this machine may view.
   const Person* person_of(const daemon::WebRequest& r) const {
-    static const Person kAnybody{"somebody on this machine", Role::viewer, ""};
+    static const Person kAnybody{"anyone on this machine", Role::viewer, ""};
     if (settings_.people.all().empty()) return settings_.web.local() ? &kAnybody : nullptr;
     const std::string bearer = r.authorization.starts_with(kBearer)
                                    ? r.authorization.substr(kBearer.size())
@@ -145,7 +145,7 @@ class FleetServer::Implementation {
 
   MHD_Result file(MHD_Connection* c, const std::string& path) {
     const daemon::WebFile* const found = file_of(path);
-    if (found == nullptr) return plain(c, 404, "not here");
+    if (found == nullptr) return plain(c, 404, "not found");
     if (!settings_.web.files.empty())
       if (const auto text = daemon::read_served_file(settings_.web.files, {path.substr(1)}))
         return daemon::answer(guard_, c, 200, *text, found->type.c_str());

@@ -56,7 +56,7 @@ class HistoryExporter : public RawExporter {
     std::string error;
     process_ = daemon::ChildProcess::start(std::move(arguments), error,
                                            (self.parent_path() / "framewatch").string());
-    return process_ ? "" : "framewatch history cannot be started: " + error;
+    return process_ ? "" : "cannot start framewatch history: " + error;
   }
 
   std::optional<std::string> ended() override {
@@ -64,7 +64,7 @@ class HistoryExporter : public RawExporter {
     if (!status) return std::nullopt;
     process_.reset();
     if (*status == 0) return "";
-    return fmt::format("framewatch history found none, or failed (status {})", *status);
+    return fmt::format("framewatch history found no samples, or failed (status {})", *status);
   }
 
  private:
@@ -100,7 +100,7 @@ void RawSender::begin_sending() {
   const std::int64_t size = size_of(path_);
   if (size <= 0) return give_up("the file of raw samples is gone");
   if (size > request_.most_bytes)
-    return give_up(fmt::format("it would be {} bytes, more than the {} that were allowed", size,
+    return give_up(fmt::format("the samples have {} bytes, more than the {} allowed", size,
                                request_.most_bytes));
   done_.assign(static_cast<std::size_t>((size + kPiece_bytes - 1) / kPiece_bytes), false);
   for (const std::int64_t piece : store_.pieces_acknowledged(request_.request))
@@ -132,7 +132,7 @@ std::optional<Outgoing> RawSender::piece(std::int64_t number, const std::string&
   const bool gives_up = state_ == State::giving_up;
   Bytes bytes = gives_up ? Bytes(why_none_.begin(), why_none_.end()) : piece_of(path_, number);
   if (bytes.empty()) {
-    give_up("the file of raw samples cannot be read");
+    give_up("cannot read the file of raw samples");
     return std::nullopt;
   }
   Outgoing out;

@@ -125,7 +125,8 @@ void SendWindow::reconnected(std::int64_t now_us) {
 }
 
 Verdict verdict_of(const Message& answer) {
-  if (answer.header(header::kStatus) == "503") return {Verdict::kUnavailable, "no stream is there"};
+  if (answer.header(header::kStatus) == "503")
+    return {Verdict::kUnavailable, "no stream takes the message"};
   const json document = json::parse(answer.bytes.begin(), answer.bytes.end(), nullptr, false);
   if (!document.is_object()) return {};
   const auto error = document.find("error");

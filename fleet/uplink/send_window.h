@@ -81,7 +81,7 @@ struct Verdict {
   static constexpr int kUnavailable = 503;  ///< no stream, or no leader at the moment
 
   int code = kUnavailable;  ///< error code; 0: the stream has the message
-  std::string why = "what answered is no stream";
+  std::string why = "the answer is not from a stream";
   bool duplicate = false;  ///< the stream had the message before
 };
 

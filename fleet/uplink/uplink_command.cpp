@@ -59,7 +59,7 @@ std::string acknowledge(const Config& config, const acknowledge_t& request) {
       daemon::give_command(config, "run", {"ACKNOWLEDGE", drivers::encoded(request)});
   if (!answer.problem.empty()) return answer.problem;
   const auto done = drivers::decoded<acknowledged_t>(answer.bytes);
-  return done ? done->refused : "the daemon's answer is not understood: another version?";
+  return done ? done->refused : "the daemon's answer is malformed: it may have another version";
 }
 
 Instant now() {
@@ -68,7 +68,8 @@ Instant now() {
 
 std::string state_text(const uplink_status_t& s) {
   if (s.connected == 0) return "no connection: " + s.link_trouble;
-  return fmt::format("{} events and {} summaries wait", s.events_waiting, s.summaries_waiting);
+  return fmt::format("{} events and {} summaries are waiting", s.events_waiting,
+                     s.summaries_waiting);
 }
 
 /// Logs one line when the connection is made and when it is lost.
@@ -80,7 +81,7 @@ class ConnectionLog {
     if (connected && !quiet) daemon::log(daemon::LogLevel::info, "the hub is connected");
     if (!connected)
       daemon::log(daemon::LogLevel::warning,
-                  "no hub: " + s.link_trouble + "; what waits is in the history");
+                  "no hub: " + s.link_trouble + "; unsent data stays in the history");
     connected_ = connected;
     said_ = true;
   }

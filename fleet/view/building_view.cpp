@@ -302,8 +302,8 @@ std::optional<FetchedSamples> read_fetched(Database& database, const std::string
   for (const Database::Row& piece : *pieces)
     out.miniseed.insert(out.miniseed.end(), piece[0]->begin(), piece[0]->end());
   if (come == all && come > 0) return out;
-  why = come == 0  ? "nothing of it has come"
-        : all == 0 ? "there is nothing: " + std::string(out.miniseed.begin(), out.miniseed.end())
+  why = come == 0  ? "no piece has come yet"
+        : all == 0 ? "no samples: " + std::string(out.miniseed.begin(), out.miniseed.end())
                    : fmt::format("{} of {} pieces have come", come, all);
   return std::nullopt;
 }

@@ -137,7 +137,7 @@ Judged judged(const BuildingState& state, std::int64_t now_us) {
     look(urgency_of(state, event), event.since_us, event.message);
   if (state.is_silent(now_us))
     look(Urgency::silent, state.heard_us.value_or(state.first_us),
-         state.heard_us ? "nothing is heard of it" : "no heartbeat has ever come");
+         state.heard_us ? "no heartbeat for over 3 minutes" : "no heartbeat has come yet");
   return out;
 }
 

@@ -55,12 +55,12 @@ class Judgement {
 
   void run() {
     const auto parts = up_parts(message_.subject);
-    if (!parts) return refuse("its subject is not one of a building");
+    if (!parts) return refuse("its subject is not fw.up.BUILDING.KIND");
     building_ = parts->building;
     kind_ = parts->kind;
     key_ = key_of_sealed(message_.header(header::kKey));
     const auto key = key_parts(key_);
-    if (!key) return refuse("it has no key");
+    if (!key) return refuse("its key (Nats-Msg-Id) is missing");
     if (key->building != building_)
       return refuse(fmt::format("its key names {}, its subject {}", key->building, building_));
     type_ = message_.header(header::kType);
@@ -88,7 +88,7 @@ class Judgement {
   template <typename Type>
   std::optional<Type> taken(const char* type) {
     if (type_ != type) {
-      refuse(fmt::format("{} is no {} but {}", kind_, type, type_));
+      refuse(fmt::format("{} must be {}, not {}", kind_, type, type_));
       return std::nullopt;
     }
     auto message = drivers::decoded<Type>(content_);
@@ -103,7 +103,7 @@ class Judgement {
   }
   bool is_key(const std::string& wanted) {
     if (key_ == wanted) return true;
-    refuse("its key is not that of its content, " + wanted);
+    refuse("its key does not match its content, " + wanted);
     return false;
   }
 
@@ -121,7 +121,7 @@ class Judgement {
     if (s->start_us < 0 || s->start_us > hub_us_ + daemon::kDay_us)
       return refuse(fmt::format("it begins at {} us, before 1970 or after tomorrow", s->start_us));
     if (!s->config_sha256.empty() && !is_digest(s->config_sha256))
-      return refuse("its configuration is no SHA-256");
+      return refuse("its configuration digest is not a SHA-256");
     batch_.summaries.push_back({building_, std::move(*s)});
   }
 
@@ -129,10 +129,11 @@ class Judgement {
     if (kind_ == "parameters") {
       auto table = taken<parameter_table_t>(type);
       if (!table) return;
-      if (!is_digest(table->config_sha256)) return refuse("its configuration is no SHA-256");
+      if (!is_digest(table->config_sha256))
+        return refuse("its configuration digest is not a SHA-256");
       batch_.parameters.push_back({building_, std::move(*table)});
     } else if (type_ != type) {
-      return refuse(fmt::format("{} is no {} but {}", kind_, type, type_));
+      return refuse(fmt::format("{} must be {}, not {}", kind_, type, type_));
     }
     batch_.newest.push_back({building_, kind_, type_, std::move(content_)});
   }
@@ -141,13 +142,13 @@ class Judgement {
     const auto piece = drivers::parse_integer(message_.header(header::kPiece));
     const auto pieces = drivers::parse_integer(message_.header(header::kPieces));
     const std::string request = kind_.substr(4);
-    if (!is_request_name(request)) return refuse("its request has no name of a-z, 0-9 and -");
+    if (!is_request_name(request)) return refuse("its request must be a name of a-z, 0-9 and -");
     const bool says_why_none = piece == 0 && pieces == 0;
     if (!piece || !pieces || *piece < 0 || *pieces > kMaxPieces ||
         (*piece >= *pieces && !says_why_none))
-      return refuse("its number is none of a piece");
+      return refuse("its piece number is not valid");
     if (says_why_none && content_.size() > kLongestWhy)
-      return refuse("it says at length that there is nothing");
+      return refuse("its reason for sending nothing is too long");
     if (!is_key(raw_key(building_, request, *piece))) return;
     batch_.pieces.push_back({building_, request, message_.header(header::kFile),
                              static_cast<std::int32_t>(*piece), static_cast<std::int32_t>(*pieces),

@@ -172,7 +172,7 @@ void Worker::store_one_by_one(std::size_t within, std::vector<ReceivedFlood> flo
     if (outcome.lasting) {
       batch = {};
       batch.others.push_back({message.subject, message.header(header::kKey),
-                              "the database does not take it: " + outcome.problem,
+                              "the database rejects it: " + outcome.problem,
                               message.header(header::kType), message.header(header::kVersion),
                               message.bytes});
       outcome = store_(batch);

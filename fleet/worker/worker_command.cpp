@@ -76,17 +76,16 @@ class WorkerLog {
     const std::string hub = link.is_connected() ? "" : "no hub: " + link.trouble();
     if (std::exchange(hub_, hub) != hub) say(hub.empty() ? "the hub is connected" : hub);
     if (std::exchange(trouble_, c.trouble) != c.trouble)
-      say(c.trouble.empty() ? "the database takes everything again"
-                            : "the database: " + c.trouble + "; what comes waits at the hub");
+      say(c.trouble.empty()
+              ? "the database stores messages again"
+              : "cannot write to the database: " + c.trouble + "; messages wait at the hub");
     if (quiet_ || steady_us < next_us_ || c.stored == said_) return;
     next_us_ = steady_us + kReport_us;
     said_ = c.stored;
-    daemon::log(
-        daemon::LogLevel::info,
-        fmt::format(
-            "{} messages stored in {} batches, {} refused, {} unknown, {} flooding, {} days "
-            "asked for again",
-            c.stored, c.batches, c.refused, c.unknown, c.flooding, c.resends));
+    daemon::log(daemon::LogLevel::info,
+                fmt::format("{} messages stored in {} batches, {} refused, {} unknown, {} "
+                            "flooding, {} days requested again",
+                            c.stored, c.batches, c.refused, c.unknown, c.flooding, c.resends));
   }
 
  private:

@@ -11,5 +11,5 @@ expected='
 ^fleet.key stays here; fleet.csr goes to who runs the hub
 ^kobe-03: fleet.pem goes back to the building, with hub/ca.pem
 ^copy hub/users.conf to every server
-^kobe-03 is not let in any more
+^kobe-03 is no longer admitted
 '

@@ -126,8 +126,8 @@ TEST(ArchiveLogs, EveryProblemIsToldAtOnce) {
       config, problems);
   ASSERT_EQ(problems.size(), 4u);
   EXPECT_NE(problems[0].find("none.lcmlog"), std::string::npos);
-  EXPECT_NE(problems[1].find("holds no raw log"), std::string::npos);
-  EXPECT_NE(problems[2].find("is named twice"), std::string::npos);
+  EXPECT_NE(problems[1].find("has no closed raw log"), std::string::npos);
+  EXPECT_NE(problems[2].find("is given twice"), std::string::npos);
   EXPECT_NE(problems[3].find("a tab"), std::string::npos);
 }
 

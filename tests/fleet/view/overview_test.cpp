@@ -60,7 +60,7 @@ TEST(BuildingState, WhatWasNeverHeardIsSilentAfterAWhile) {
   state.first_us = kAlive_us;
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::well);
   state.first_us = kLongAgo_us;
-  EXPECT_EQ(judged(state, kNow_us).message, "no heartbeat has ever come");
+  EXPECT_EQ(judged(state, kNow_us).message, "no heartbeat has come yet");
 }
 
 TEST(BuildingState, EventsComeChangeAndGo) {
