@@ -14,67 +14,69 @@ namespace framewatch::fleet {
 
 void add_uplink(daemon::CommandList& commands) {
   UplinkArguments& arguments = commands.arguments<UplinkArguments>();
-  CLI::App* command = commands.add(
-      "uplink",
-      "beside `framewatch run`: sends what the history holds to the hub of many buildings");
+  CLI::App* command =
+      commands.add("uplink", "send the history of a building to the hub, beside `framewatch run`");
   command->footer(
-      "CONFIG has the sections [fleet] and [history]. What the hub has not acknowledged waits in\n"
-      "the history, however long there is no hub; `framewatch run` knows nothing of all this.\n"
+      "CONFIG needs the sections [fleet] and [history]. Data that the hub has not acknowledged "
+      "stays\n"
+      "in the history, however long the hub is away. `framewatch run` does not depend on the hub.\n"
       "Exit status: 0 stopped, 1 no LCM, 2 bad usage, configuration or certificate.\n"
       "Example: framewatch uplink /etc/framewatch/building.toml");
   daemon::add_config(commands, command, arguments.config);
   daemon::add_url(command, arguments.url);
-  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  command->add_flag("--quiet", arguments.quiet, "log only problems");
   commands.set_action(command, [&arguments] { return uplink_command(arguments); });
 }
 
 void add_worker(daemon::CommandList& commands) {
   WorkerArguments& arguments = commands.arguments<WorkerArguments>();
-  CLI::App* command =
-      commands.add("worker", "at the hub: what buildings say, into PostgreSQL; any number of them");
+  CLI::App* command = commands.add(
+      "worker", "at the hub: store messages of buildings in PostgreSQL; run any number of workers");
   command->footer(
-      "Makes the tables, and waits for hub and database as long as they are away: what is not\n"
-      "stored is not acknowledged. DIR has worker.pem, worker.key and ca.pem (fleet authority).\n"
+      "Creates the tables. Waits while the hub or the database is away; acknowledges only what is\n"
+      "stored. DIR has worker.pem, worker.key and ca.pem (fleet authority).\n"
       "Exit status: 0 stopped, 2 bad usage or certificates.\n"
       "Example: framewatch fleet worker --hub tls://hub1.example.org:4222 --database "
       "postgresql://fleet@db/fleet");
-  command->add_option("--hub", arguments.hubs, "server, tls://HOST:PORT; once for each")
+  command->add_option("--hub", arguments.hubs, "server, tls://HOST:PORT; repeat for each")
       ->required();
   command->add_option("--dir", arguments.directory, "folder of the certificates")
       ->type_name("DIR")
       ->capture_default_str();
   command
       ->add_option("--database", arguments.database,
-                   "of PostgreSQL: a connection string or URI; the environment (PGHOST, ...) says\n"
-                   "the rest")
+                   "PostgreSQL connection string or URI; missing parts come from the environment\n"
+                   "(PGHOST, ...)")
       ->required();
-  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  command->add_flag("--quiet", arguments.quiet, "log only problems");
   commands.set_action(command, [&arguments] { return worker_command(arguments); });
 }
 
 void add_manifest(daemon::CommandList& commands) {
   ManifestArguments& arguments = commands.arguments<ManifestArguments>();
   CLI::App* command = commands.add(
-      "manifest", "an archive of raw logs as tasks, one a line, for `framewatch fleet task`");
+      "manifest", "split an archive of raw logs into tasks for `framewatch fleet task`");
   command->footer(
-      "Each line: number, key, configuration, output, three times (microseconds), logs, with tabs\n"
-      "between them. Exit status: 0 done, 2 bad usage, configuration or logs.\n"
+      "Prints one task a line, with tabs between number, key, configuration, output, three times\n"
+      "(microseconds) and logs. Exit status: 0 done, 2 bad usage, configuration or logs.\n"
       "Examples:\n"
       "  framewatch fleet manifest building.toml out history > manifest.tsv\n"
       "  framewatch fleet manifest building.toml out logs/*.lcmlog.zst --hours 24 > manifest.tsv");
   command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
-  command->add_option("OUT", arguments.folder, "folder for what the tasks write; made if missing")
+  command
+      ->add_option("OUT", arguments.folder,
+                   "folder for the outputs of the tasks; created if missing")
       ->required();
   command
       ->add_option("LOG", arguments.places,
                    "raw logs of a history, directories of histories, or LCM event logs")
       ->required();
-  command->add_option("--hours", arguments.hours, "of sensor time that a task stores")
+  command->add_option("--hours", arguments.hours, "hours of sensor time that a task stores")
       ->check(CLI::Range(1, 8784))
       ->capture_default_str();
   command
       ->add_option("--warm-up", arguments.warm_up_s,
-                   "seconds of samples before it, in which filters and tuning settle")
+                   "seconds of samples before that, in which filters and tuning settle")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   commands.set_action(command, [&arguments] { return manifest(arguments); });
@@ -82,20 +84,19 @@ void add_manifest(daemon::CommandList& commands) {
 
 void add_task(daemon::CommandList& commands) {
   TaskArguments& arguments = commands.arguments<TaskArguments>();
-  CLI::App* command = commands.add(
-      "task", "tasks of a manifest: logs in, summaries out, once, however often it is asked");
+  CLI::App* command =
+      commands.add("task", "run tasks of a manifest that are not done: logs in, summaries out");
   command->footer(
-      "OUT/TIME.sqlite has the tables of a history, OUT/TIME.json the line that is printed. What "
-      "is\n"
-      "done is not done again: the key in that line says so. Exit status: 0 done, 1 one failed, 2\n"
-      "bad usage or manifest.\n"
+      "OUT/TIME.sqlite has the tables of a history, OUT/TIME.json the printed line, whose key "
+      "marks\n"
+      "the task as done. Exit status: 0 done, 1 a task failed, 2 bad usage or manifest.\n"
       "Examples:\n"
       "  framewatch fleet task manifest.tsv 1 2 3\n"
       "  parallel --joblog run.log --resume-failed framewatch fleet task manifest.tsv {} ::: \\\n"
       "    $(seq $(wc -l < manifest.tsv))");
   command->add_option("MANIFEST", arguments.manifest, "file that `framewatch fleet manifest` wrote")
       ->required();
-  command->add_option("N", arguments.numbers, "numbers of tasks")->required();
+  command->add_option("N", arguments.numbers, "numbers of the tasks to run")->required();
   commands.set_action(command, [&arguments] { return task(arguments); });
 }
 

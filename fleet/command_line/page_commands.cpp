@@ -14,8 +14,8 @@ constexpr int kHighestPort = 65535;
 void add_database(CLI::App* command, std::string& database) {
   command
       ->add_option("--database", database,
-                   "of PostgreSQL: a connection string or URI; the environment (PGHOST, ...) says\n"
-                   "the rest")
+                   "PostgreSQL connection string or URI; missing parts come from the environment\n"
+                   "(PGHOST, ...)")
       ->required();
 }
 
@@ -24,93 +24,103 @@ void add_database(CLI::App* command, std::string& database) {
 void add_fleet_serve(daemon::CommandList& commands) {
   FleetServeArguments& arguments = commands.arguments<FleetServeArguments>();
   CLI::App* command = commands.add(
-      "serve", "at the hub: every building in the browser, by severity; earthquakes; commands");
+      "serve", "at the hub: show all buildings, earthquakes and commands in the browser");
   command->footer(
-      "Reads the database that workers fill. With --hub operators give commands to buildings: DIR\n"
-      "has page.pem, page.key and ca.pem (fleet authority). Without --people who is on this "
+      "Reads the database of the workers. With --hub, operators can give commands to buildings; "
+      "DIR\n"
+      "has page.pem, page.key and ca.pem (fleet authority). Without --people, anyone on this "
       "machine\n"
-      "may look, and nobody gives commands. Other machines reach it through a proxy with TLS, or\n"
+      "may view and no one may give commands. Other machines need a proxy with TLS, or\n"
       "ssh -L 8090:localhost:8090. Exit status: 0 stopped, 2 bad usage, people or certificates.\n"
       "Example: framewatch fleet serve --database postgresql:///fleet --people people \\\n"
       "  --hub tls://hub1.example.org:4222 --dir hub");
   add_database(command, arguments.database);
-  command->add_option("--hub", arguments.hubs, "server, tls://HOST:PORT; once for each");
+  command->add_option("--hub", arguments.hubs, "server, tls://HOST:PORT; repeat for each");
   command->add_option("--dir", arguments.directory, "folder of the certificates")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--people", arguments.people, "who may look, and command (fleet person)")
+  command
+      ->add_option("--people", arguments.people,
+                   "file of people who may view and give commands (fleet person)")
       ->type_name("FILE");
-  command->add_option("--address", arguments.address, "to listen on; another one needs --people")
+  command
+      ->add_option("--address", arguments.address,
+                   "address to listen on; other than 127.0.0.1 needs --people")
       ->capture_default_str();
-  command->add_option("--port", arguments.port, "0: a free one")
+  command->add_option("--port", arguments.port, "port; 0: any free port")
       ->check(CLI::Range(0, kHighestPort))
       ->capture_default_str();
   command->add_option("--host", arguments.hosts,
-                      "further name that requests may come under, behind a proxy");
-  command->add_option("--files", arguments.files, "folder with the page, for work on it")
+                      "further host name that requests may use, behind a proxy");
+  command
+      ->add_option("--files", arguments.files,
+                   "folder of page files that replace the built-in ones")
       ->type_name("DIR");
-  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  command->add_flag("--quiet", arguments.quiet, "log only problems");
   commands.set_action(command, [&arguments] { return fleet_serve_command(arguments); });
 }
 
 void add_person(daemon::CommandList& commands) {
   PersonArguments& arguments = commands.arguments<PersonArguments>();
   CLI::App* command = commands.add(
-      "person", "a token for the page of `fleet serve`: printed once, kept as SHA-256");
+      "person", "create a token for the page of `fleet serve`: printed once, stored as SHA-256");
   command->footer(
-      "A token that was lost is replaced by asking again. `fleet serve` reads the file when it "
-      "starts.\n"
+      "Run it again to replace a lost token. `fleet serve` reads the file when it starts.\n"
       "Example: framewatch fleet person alice --role operator --people people");
-  command->add_option("NAME", arguments.name, "what the journal calls the person")->required();
-  command->add_option("--role", arguments.role, "viewer, or operator, who gives commands too")
+  command->add_option("NAME", arguments.name, "name of the person in the journal")->required();
+  command->add_option("--role", arguments.role, "viewer, or operator, who may also give commands")
       ->check(CLI::IsMember({"viewer", "operator"}))
       ->capture_default_str();
-  command->add_option("--people", arguments.people, "file; made if missing")
+  command->add_option("--people", arguments.people, "file; created if missing")
       ->type_name("FILE")
       ->capture_default_str();
-  command->add_flag("--remove", arguments.remove, "takes the token back");
+  command->add_flag("--remove", arguments.remove, "remove the person");
   commands.set_action(command, [&arguments] { return person_command(arguments); });
 }
 
 void add_describe(daemon::CommandList& commands) {
   DescribeArguments& arguments = commands.arguments<DescribeArguments>();
-  CLI::App* command = commands.add(
-      "describe", "at the hub: a building's title, place and position on the map, in the database");
+  CLI::App* command =
+      commands.add("describe", "at the hub: set the title, place and map position of a building");
   command->footer(
-      "What is not given stays. A retired building is in no overview and gets no command.\n"
+      "Keeps values that are not given. A retired building leaves the overview and gets no "
+      "commands.\n"
       "Example: framewatch fleet describe kobe-03 --database postgresql:///fleet \\\n"
-      "  --title \"Harbour tower\" --place Kobe --latitude 34.69 --longitude 135.19");
-  command->add_option("BUILDING", arguments.building, "its name at the hub")->required();
+      "  --title \"Harbor tower\" --place Kobe --latitude 34.69 --longitude 135.19");
+  command->add_option("BUILDING", arguments.building, "name of the building at the hub")
+      ->required();
   add_database(command, arguments.database);
-  command->add_option("--title", arguments.title, "what people call it");
+  command->add_option("--title", arguments.title, "title of the building");
   command->add_option("--place", arguments.place, "town, street");
   command->add_option("--latitude", arguments.latitude, "degrees north")
       ->check(CLI::Range(-90.0, 90.0));
   command->add_option("--longitude", arguments.longitude, "degrees east")
       ->check(CLI::Range(-180.0, 180.0));
-  command->add_option("--network", arguments.network, "its network in SEED, for fleet export (XX)");
-  command->add_option("--station", arguments.station, "its station in SEED (B and a number)");
-  CLI::Option* retired = command->add_flag("--retired", arguments.retired, "it is no more");
-  command->add_flag("--not-retired", arguments.not_retired, "it is again")->excludes(retired);
+  command->add_option("--network", arguments.network, "SEED network code, for fleet export (XX)");
+  command->add_option("--station", arguments.station, "SEED station code (B and a number)");
+  CLI::Option* retired = command->add_flag("--retired", arguments.retired, "retire the building");
+  command->add_flag("--not-retired", arguments.not_retired, "restore a retired building")
+      ->excludes(retired);
   commands.set_action(command, [&arguments] { return describe_command(arguments); });
 }
 
 void add_export(daemon::CommandList& commands) {
   ExportArguments& arguments = commands.arguments<ExportArguments>();
-  CLI::App* command = commands.add(
-      "export", "raw samples that were fetched from buildings, as miniSEED in the folders of SDS");
+  CLI::App* command =
+      commands.add("export", "write raw samples fetched from buildings as miniSEED in SDS folders");
   command->footer(
       "DIR/YEAR/NET/STA/CHAN.D/NET.STA.LOC.CHAN.D.YEAR.DAY, which SeisComP, slarchive, ringserver\n"
-      "and ObsPy read. What is there already stays: the same again changes nothing. Exit status: "
+      "and ObsPy read. Existing samples stay; exporting them again changes nothing. Exit status: "
       "0\n"
-      "done, 1 a stretch is not whole or cannot be read, 2 bad usage or no database.\n"
+      "done, 1 samples are incomplete or unreadable, 2 bad usage or no database.\n"
       "Example: framewatch fleet export --sds archive --database postgresql:///fleet");
-  command->add_option("--sds", arguments.root, "folder of the archive; made if missing")
+  command->add_option("--sds", arguments.root, "folder of the archive; created if missing")
       ->type_name("DIR")
       ->required();
   add_database(command, arguments.database);
-  command->add_option("--building", arguments.building, "of this one alone");
-  command->add_option("--request", arguments.request, "of this command alone: the page names it");
+  command->add_option("--building", arguments.building, "export only this building");
+  command->add_option("--request", arguments.request,
+                      "export only this request, as named on the page");
   commands.set_action(command, [&arguments] { return export_command(arguments); });
 }
 
