@@ -17,9 +17,9 @@ void add_uplink(daemon::CommandList& commands) {
   CLI::App* command =
       commands.add("uplink", "send the history of a building to the hub, beside `framewatch run`");
   command->footer(
-      "CONFIG needs the sections [fleet] and [history]. Data that the hub has not acknowledged "
-      "stays\n"
-      "in the history, however long the hub is away. `framewatch run` does not depend on the hub.\n"
+      "CONFIG needs the sections [fleet] and [history]. Data that the hub has not acknowledged\n"
+      "stays in the history, however long the hub is away. `framewatch run` does not depend on\n"
+      "the hub.\n"
       "Exit status: 0 stopped, 1 no LCM, 2 bad usage, configuration or certificate.\n"
       "Example: framewatch uplink /etc/framewatch/building.toml");
   daemon::add_config(commands, command, arguments.config);

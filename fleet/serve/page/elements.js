@@ -23,8 +23,8 @@ function table(titles, rows, className = '') {
 // What a building needs: a shape too, so that nobody needs to see colours.
 const kUrgencies = ['alarm', 'warning', 'silent', 'changed', 'known', 'well'];
 const kMeaning = {
-  alarm: 'an alarm is raised that nobody acknowledged', warning: 'a warning is raised that nobody acknowledged', silent: 'no heartbeat for three minutes',
-  changed: 'something has changed, for information', known: 'what is raised was acknowledged', well: 'nothing is raised, and it is heard',
+  alarm: 'an alarm is raised and not acknowledged', warning: 'a warning is raised and not acknowledged', silent: 'no heartbeat for three minutes',
+  changed: 'only information is raised', known: 'all raised events are acknowledged', well: 'no event is raised, and heartbeats come',
 };
 function shape(urgency) {
   switch (urgency) {
@@ -42,7 +42,7 @@ class Problem extends Error {}
 async function ask(path, parameters = {}, options = {}) {
   const words = new URLSearchParams(Object.entries(parameters).filter(([, v]) => v !== undefined && v !== null && v !== ''));
   let answer;
-  try { answer = await fetch(`${path}?${words}`, options); } catch { throw new Problem('this page\'s server does not answer'); }
+  try { answer = await fetch(`${path}?${words}`, options); } catch { throw new Problem('the server of this page does not answer'); }
   if (answer.status === 204) return null;
   const type = answer.headers.get('Content-Type') || '';
   const content = type.startsWith('application/json') ? await answer.json() : {problem: (await answer.text()).trim()};

@@ -40,7 +40,7 @@ function trouble(text) {
   const box = $('trouble');
   troubleSince = text ? troubleSince || Date.now() * 1e3 : 0;
   box.hidden = !text;
-  if (text) box.textContent = `${text}; what is shown is of before ${when(troubleSince)}`;
+  if (text) box.textContent = `${text}; the values shown are from before ${when(troubleSince)}`;
 }
 let saying = null;
 function say(text) {
