@@ -87,9 +87,8 @@ void add_task(daemon::CommandList& commands) {
   CLI::App* command =
       commands.add("task", "run tasks of a manifest that are not done: logs in, summaries out");
   command->footer(
-      "OUT/TIME.sqlite has the tables of a history, OUT/TIME.json the printed line, whose key "
-      "marks\n"
-      "the task as done. Exit status: 0 done, 1 a task failed, 2 bad usage or manifest.\n"
+      "OUT/TIME.sqlite has the tables of a history, OUT/TIME.json the printed line, whose key\n"
+      "marks the task as done. Exit status: 0 done, 1 a task failed, 2 bad usage or manifest.\n"
       "Examples:\n"
       "  framewatch fleet task manifest.tsv 1 2 3\n"
       "  parallel --joblog run.log --resume-failed framewatch fleet task manifest.tsv {} ::: \\\n"
