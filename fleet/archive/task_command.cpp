@@ -105,9 +105,10 @@ constexpr const char* kMeans =
     " FROM summary JOIN parameter ON parameter.id = parameter"
     " WHERE period_s = (SELECT min(period_s) FROM period) GROUP BY parameter ORDER BY parameter";
 
-/// Summarizes each parameter of a database with the tables of a history over all of its shortest
-/// periods, by name: unit, number of windows with a value, mean, standard error (root mean square
-/// of the windows' errors), least and largest value. Returns null if the database cannot be read.
+/// Summarizes each parameter of a database with the tables of a history over its shortest periods.
+/// Returns an object by name with the unit, the number of windows with a value, the mean, the least
+/// and the largest value. std_error is the root mean square of the windows' errors. Returns null if
+/// the database cannot be read.
 nlohmann::ordered_json parameter_means(const std::string& database) {
   daemon::SqliteFile file;
   if (!file.open_to_read(database)) return nullptr;

@@ -24,7 +24,7 @@ constexpr const char* kCookie = "framewatch_fleet";
 constexpr std::string_view kPostPaths[] = {"/command"};
 constexpr std::string_view kBearer = "Bearer ";
 constexpr int kOtherDescriptors = 64;  // the hub, the database, logs
-// Of the page of one building.
+// Shared with the page of one building.
 constexpr const char* kShared[] = {"/page.css", "/words.js", "/icon.svg", "/uPlot.iife.min.js",
                                    "/uPlot.min.css"};
 

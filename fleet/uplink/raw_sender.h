@@ -34,8 +34,7 @@ class RawSender {
   RawSender(std::string directory, std::string building, double kbit_s, SentStore& store,
             std::unique_ptr<RawExporter> exporter);
 
-  /// Returns the next piece that may be sent now; nullopt if there is none. steady_us: monotonic
-  /// clock.
+  /// Returns the next piece, or nullopt if no piece may be sent now. steady_us: monotonic clock.
   std::optional<Outgoing> next(std::int64_t steady_us, const std::string& config_sha256,
                                const SendWindow& window);
   /// Notes that the hub has this piece.

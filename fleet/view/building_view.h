@@ -9,10 +9,13 @@
 
 namespace framewatch::fleet {
 
-/// Returns one building as JSON: its description and urgency (as overview_json()), "raised" events,
-/// "parameters" with their newest values and baseline ("observed_us": time of that period; missing
-/// if none within a day), "channels", the process, "events" (the newest 200), and "stretches"
-/// (requested raw samples; "problem": why none came). Returns {"problem": ..} for an unknown name.
+/// Returns one building as JSON: its description and urgency, as in overview_json(), and:
+///   "raised"      raised events
+///   "parameters"  newest values and baselines; "observed_us" is missing if none within a day
+///   "channels"    state of the sensors and the process
+///   "events"      the newest 200
+///   "stretches"   requested raw samples; "problem": why none came
+/// Returns {"problem": ..} for an unknown name.
 std::string building_json(Database& database, const std::string& name);
 
 /// Raw samples that a building sent on request.
