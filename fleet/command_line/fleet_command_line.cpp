@@ -8,7 +8,6 @@
 #include "fleet/archive/task_command.h"
 #include "fleet/command_line/fleet_commands.h"
 #include "fleet/uplink/uplink_command.h"
-#include "fleet/worker/worker_command.h"
 
 namespace framewatch::fleet {
 
@@ -26,30 +25,6 @@ void add_uplink(daemon::CommandList& commands) {
   daemon::add_url(command, arguments.url);
   command->add_flag("--quiet", arguments.quiet, "log only problems");
   commands.set_action(command, [&arguments] { return uplink_command(arguments); });
-}
-
-void add_worker(daemon::CommandList& commands) {
-  WorkerArguments& arguments = commands.arguments<WorkerArguments>();
-  CLI::App* command = commands.add(
-      "worker", "at the hub: store messages of buildings in PostgreSQL; run any number of workers");
-  command->footer(
-      "Creates the tables. Waits while the hub or the database is away; acknowledges only what is\n"
-      "stored. DIR has worker.pem, worker.key and ca.pem (fleet authority).\n"
-      "Exit status: 0 stopped, 2 bad usage or certificates.\n"
-      "Example: framewatch fleet worker --hub tls://hub1.example.org:4222 --database "
-      "postgresql://fleet@db/fleet");
-  command->add_option("--hub", arguments.hubs, "server, tls://HOST:PORT; repeat for each")
-      ->required();
-  command->add_option("--dir", arguments.directory, "folder of the certificates")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command
-      ->add_option("--database", arguments.database,
-                   "PostgreSQL connection string or URI; missing parts come from the environment\n"
-                   "(PGHOST, ...)")
-      ->required();
-  command->add_flag("--quiet", arguments.quiet, "log only problems");
-  commands.set_action(command, [&arguments] { return worker_command(arguments); });
 }
 
 void add_manifest(daemon::CommandList& commands) {

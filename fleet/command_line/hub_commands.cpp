@@ -28,6 +28,14 @@ void add_reload(CLI::App* command, EnrollArguments& arguments) {
 
 }  // namespace
 
+CLI::Option* add_hubs(CLI::App* command, std::vector<std::string>& hubs) {
+  return command->add_option("--hub", hubs, "server, tls://HOST:PORT; repeat for each");
+}
+
+void add_building(CLI::App* command, std::string& building) {
+  command->add_option("BUILDING", building, "name of the building at the hub")->required();
+}
+
 void add_setup(daemon::CommandList& commands) {
   SetupArguments& arguments = commands.arguments<SetupArguments>();
   CLI::App* command = commands.add(
@@ -36,8 +44,7 @@ void add_setup(daemon::CommandList& commands) {
       "Prints the differences. DIR has operator.pem, operator.key and ca.pem (fleet authority).\n"
       "Exit status: 0 correct, 1 with --check: something differs, 2 no hub, or it refused.\n"
       "Example: framewatch fleet setup --hub tls://hub1.example.org:4222 --dir hub");
-  command->add_option("--hub", arguments.hub.hubs, "server, tls://HOST:PORT; repeat for each")
-      ->required();
+  add_hubs(command, arguments.hub.hubs)->required();
   add_directory(command, arguments.hub.directory);
   command->add_option("--replicas", arguments.replicas, "number of servers that store each message")
       ->check(CLI::IsMember({1, 3, 5}))
@@ -69,8 +76,7 @@ void add_request(daemon::CommandList& commands) {
   CLI::App* command =
       commands.add("request", "in a building: create a private key and a certificate request");
   command->footer("Example: framewatch fleet request kobe-03");
-  command->add_option("BUILDING", arguments.building, "name of the building at the hub")
-      ->required();
+  add_building(command, arguments.building);
   command->add_option("--key", arguments.key, "file for the private key, which must stay here")
       ->type_name("FILE")
       ->capture_default_str();
@@ -85,8 +91,7 @@ void add_enroll(daemon::CommandList& commands) {
   CLI::App* command =
       commands.add("enroll", "at the hub: sign a building's request and admit the building");
   command->footer("Example: framewatch fleet enroll kobe-03 fleet.csr --dir hub");
-  command->add_option("BUILDING", arguments.building, "name of the building at the hub")
-      ->required();
+  add_building(command, arguments.building);
   command->add_option("REQUEST", arguments.request, "file that `fleet request` wrote")->required();
   add_directory(command, arguments.directory);
   command->add_option("--out", arguments.certificate, "file for the certificate (BUILDING.pem)")
@@ -101,8 +106,7 @@ void add_revoke(daemon::CommandList& commands) {
   command->footer(
       "Servers disconnect it as soon as they reload users.conf.\n"
       "Example: framewatch fleet revoke kobe-03 --dir hub");
-  command->add_option("BUILDING", arguments.building, "name of the building at the hub")
-      ->required();
+  add_building(command, arguments.building);
   add_directory(command, arguments.directory);
   add_reload(command, arguments);
   commands.set_action(command, [&arguments] { return revoke_command(arguments); });

@@ -23,12 +23,15 @@ struct EarthquakeRequest {
   std::string building;      ///< all values of this building; empty: all buildings in short
 };
 
-/// Returns every building before and after as JSON. "compared" is the number of comparisons.
-/// "times_error" is the number of standard errors of a significant loss. The list of buildings:
-///   "buildings": [{"name", "title", "place", "result": loss | none | not_observable | nothing,
-///                  "period_s", "before", "after": periods, "compared", "significant": losses,
-///                  "not_observable": [names], "worst": {"parameter", "before", "after", "unit",
-///                  "ratio", "std_error"}}]
+/// Returns every building before and after as JSON with "time_us", "times_error", "compared" and
+/// "buildings". "times_error" is the number of standard errors of a significant loss. "compared" is
+/// the number of comparisons. A building has "name", "title", "place", "period_s" and these fields:
+///   "result"              loss, none, not_observable or nothing
+///   "before", "after"     number of periods
+///   "compared"            number of stiffnesses
+///   "significant"         number of losses
+///   "not_observable"      list of names
+///   "worst"               {"parameter", "before", "after", "unit", "ratio", "std_error"}
 /// Buildings with the largest significant loss come first, those without a result last. With a
 /// building, includes its "parameters". Returns {"problem": ..} if the database fails.
 std::string earthquake_json(Database& database, const EarthquakeRequest& request);

@@ -5,6 +5,7 @@
 #include "fleet/sds/export_command.h"
 #include "fleet/serve/person_command.h"
 #include "fleet/serve/serve_command.h"
+#include "fleet/worker/worker_command.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -19,7 +20,30 @@ void add_database(CLI::App* command, std::string& database) {
       ->required();
 }
 
+void add_certificates(CLI::App* command, std::string& directory) {
+  command->add_option("--dir", directory, "folder of the certificates")
+      ->type_name("DIR")
+      ->capture_default_str();
+}
+
 }  // namespace
+
+void add_worker(daemon::CommandList& commands) {
+  WorkerArguments& arguments = commands.arguments<WorkerArguments>();
+  CLI::App* command = commands.add(
+      "worker", "at the hub: store messages of buildings in PostgreSQL; run any number of workers");
+  command->footer(
+      "Creates the tables. Waits while the hub or the database is away; acknowledges only what is\n"
+      "stored. DIR has worker.pem, worker.key and ca.pem (fleet authority).\n"
+      "Exit status: 0 stopped, 2 bad usage or certificates.\n"
+      "Example: framewatch fleet worker --hub tls://hub1.example.org:4222 --database "
+      "postgresql://fleet@db/fleet");
+  add_hubs(command, arguments.hubs)->required();
+  add_certificates(command, arguments.directory);
+  add_database(command, arguments.database);
+  command->add_flag("--quiet", arguments.quiet, "log only problems");
+  commands.set_action(command, [&arguments] { return worker_command(arguments); });
+}
 
 void add_fleet_serve(daemon::CommandList& commands) {
   FleetServeArguments& arguments = commands.arguments<FleetServeArguments>();
@@ -35,10 +59,8 @@ void add_fleet_serve(daemon::CommandList& commands) {
       "Example: framewatch fleet serve --database postgresql:///fleet --people people \\\n"
       "  --hub tls://hub1.example.org:4222 --dir hub");
   add_database(command, arguments.database);
-  command->add_option("--hub", arguments.hubs, "server, tls://HOST:PORT; repeat for each");
-  command->add_option("--dir", arguments.directory, "folder of the certificates")
-      ->type_name("DIR")
-      ->capture_default_str();
+  add_hubs(command, arguments.hubs);
+  add_certificates(command, arguments.directory);
   command
       ->add_option("--people", arguments.people,
                    "file of people who may view and give commands (fleet person)")
@@ -87,8 +109,7 @@ void add_describe(daemon::CommandList& commands) {
       "commands.\n"
       "Example: framewatch fleet describe kobe-03 --database postgresql:///fleet \\\n"
       "  --title \"Harbor tower\" --place Kobe --latitude 34.69 --longitude 135.19");
-  command->add_option("BUILDING", arguments.building, "name of the building at the hub")
-      ->required();
+  add_building(command, arguments.building);
   add_database(command, arguments.database);
   command->add_option("--title", arguments.title, "title of the building");
   command->add_option("--place", arguments.place, "town, street");
