@@ -53,7 +53,7 @@ MetricFamilies& MetricFamilies::counter(const char* name, const char* help) {
   return family(name, help, prometheus::MetricType::Counter);
 }
 
-MetricFamilies& MetricFamilies::value(double value, const Labels& labels) {
+MetricFamilies& MetricFamilies::add_value(double value, const Labels& labels) {
   prometheus::ClientMetric metric;
   for (const auto& [name, of] : labels) metric.label.push_back({name, printable(of)});
   metric.gauge.value = metric.counter.value = value;
@@ -82,16 +82,14 @@ std::string MetricFamilies::text() const {
 
 void add_service(MetricFamilies& out, const service_t& s) {
   const auto seconds = [](std::int64_t us) { return 1e-6 * static_cast<double>(us); };
-  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
   out.gauge("build_info", "Always 1: which program runs with which configuration.")
       .value(1, {{"version", s.version}, {"config_sha256", s.config_sha256}});
   out.gauge("start_time_seconds", "Start of this framewatch run process, Unix time.")
       .value(seconds(s.started_us));
   if (s.starts > 0) {
-    out.counter("starts_total", "Starts of framewatch run with its state file.")
-        .value(number(s.starts));
+    out.counter("starts_total", "Starts of framewatch run with its state file.").value(s.starts);
     out.counter("unclean_starts_total", "Starts after a run that ended without a stop signal.")
-        .value(number(s.unclean_starts));
+        .value(s.unclean_starts);
     out.gauge("resumed", "1: this process resumed from the state file; 0: it started afresh.")
         .value(s.resumed);
     out.gauge("state_write_failed", "1: the newest write of the state file failed.")
@@ -102,13 +100,13 @@ void add_service(MetricFamilies& out, const service_t& s) {
         .value(seconds(s.state_written_us));
   if (s.disk_free_bytes >= 0)
     out.gauge("state_disk_free_bytes", "Free bytes on the disk of the state file.")
-        .value(number(s.disk_free_bytes));
+        .value(s.disk_free_bytes);
   out.counter("reloads_total", "Requested reloads of the configuration, by result.")
-      .value(number(s.reloads), {{"result", "done"}})
-      .value(number(s.reloads_refused), {{"result", "refused"}});
+      .value(s.reloads, {{"result", "done"}})
+      .value(s.reloads_refused, {{"result", "refused"}});
   out.gauge("config_last_reload_successful", "0: the newest reload was refused.")
       .value(s.reload_problem.empty() ? 1 : 0);
-  out.gauge("resident_memory_bytes", "Memory of framewatch run.").value(number(s.resident_bytes));
+  out.gauge("resident_memory_bytes", "Memory of framewatch run.").value(s.resident_bytes);
   out.counter("cpu_seconds_total", "Processor time of framewatch run.").value(s.cpu_s);
   if (s.received_us > 0)
     out.gauge("last_sample_received_timestamp_seconds", "Arrival of the newest sample, host clock.")
@@ -124,7 +122,7 @@ void add_service(MetricFamilies& out, const service_t& s) {
     out.gauge("clock_offset_seconds", "Sensor clock minus host clock, transport included.")
         .value(seconds(newest_us - s.received_us));
   out.counter("deadline_missed_total", "Estimates later than the hop between two.")
-      .value(number(s.deadline_missed));
+      .value(s.deadline_missed);
   out.histogram("step_duration_seconds", "Time spent on one message or CAN frame.", s.limit_s,
                 s.steps, s.step_sum_s);
   out.histogram("sample_to_estimate_latency_seconds",
@@ -133,16 +131,14 @@ void add_service(MetricFamilies& out, const service_t& s) {
 }
 
 void add_status(MetricFamilies& out, const status_t& s) {
-  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
-  out.counter("windows_total", "Estimates published.").value(number(s.windows));
-  out.counter("sample_sets_total", "Instants given to the estimator.").value(number(s.sample_sets));
-  out.counter("window_restarts_total", "Gaps that restarted the window.").value(number(s.gaps));
+  out.counter("windows_total", "Estimates published.").value(s.windows);
+  out.counter("sample_sets_total", "Instants given to the estimator.").value(s.sample_sets);
+  out.counter("window_restarts_total", "Gaps that restarted the window.").value(s.gaps);
   out.counter("rejected_messages_total", "Undecodable, foreign or impossible input.")
-      .value(number(s.rejected_messages));
+      .value(s.rejected_messages);
   out.gauge("queue_high_water_messages", "Most messages that ever waited for the estimator.")
       .value(s.queue_high_water);
-  out.counter("queue_dropped_total", "Messages lost to a full queue.")
-      .value(number(s.queue_dropped));
+  out.counter("queue_dropped_total", "Messages lost to a full queue.").value(s.queue_dropped);
   out.counter("samples_total", "Samples received.").each("channel", s.name, s.received);
   out.counter("samples_lost_total", "Sequence numbers never seen.").each("channel", s.name, s.lost);
   out.counter("samples_repaired_total", "Single losses filled by interpolation.")
@@ -181,7 +177,7 @@ void add_estimate(MetricFamilies& out, const parameter_table_t& table, const win
     if (valid(p) && table.design[p] > 0) out.value(e.value[p] / table.design[p], labels(p));
   out.gauge("parameter_excitation_ratio", "Energy of the regressor over its noise energy.");
   for (std::size_t p = 0; p < e.value.size(); ++p)
-    if (std::isfinite(e.snr[p])) out.value(static_cast<double>(e.snr[p]), labels(p));
+    if (std::isfinite(e.snr[p])) out.value(e.snr[p], labels(p));
 }
 
 void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_t& w) {
@@ -246,58 +242,52 @@ void add_can(MetricFamilies& out, const can_status_t& s) {
   out.counter("can_overflow_total", "Overflows of the controller's receive buffer.")
       .each("interface", s.interface, s.overflow);
   out.counter("can_dropped_frames_total", "Frames lost to full receive queues of the host.")
-      .value(static_cast<double>(s.dropped));
+      .value(s.dropped);
 }
 
 void add_uplink(MetricFamilies& out, const uplink_status_t& s) {
-  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
   out.gauge("uplink_connected", "1: connected to a hub.").value(s.connected);
   out.gauge("uplink_acknowledged_timestamp_seconds",
             "Host clock of the newest acknowledgement of the hub, Unix time; 0: none yet.")
-      .value(1e-6 * number(s.acknowledged_us));
+      .value(1e-6 * static_cast<double>(s.acknowledged_us));
   out.gauge("uplink_waiting", "Messages that the hub has not acknowledged, by kind.")
-      .value(number(s.events_waiting), {{"kind", "event"}})
-      .value(number(s.summaries_waiting), {{"kind", "summary"}})
-      .value(number(s.pieces_waiting), {{"kind", "raw"}});
+      .value(s.events_waiting, {{"kind", "event"}})
+      .value(s.summaries_waiting, {{"kind", "summary"}})
+      .value(s.pieces_waiting, {{"kind", "raw"}});
   out.counter("uplink_acknowledged_total", "Messages that the hub acknowledged.")
-      .value(number(s.acknowledged));
+      .value(s.acknowledged);
   out.counter("uplink_sent_again_total", "Messages sent again because no acknowledgement came.")
-      .value(number(s.sent_again));
+      .value(s.sent_again);
   out.counter("uplink_refused_total", "Messages that the hub refused; they are kept.")
-      .value(number(s.refused));
-  out.counter("uplink_sent_bytes_total", "Bytes given to the network.").value(number(s.sent_bytes));
+      .value(s.refused);
+  out.counter("uplink_sent_bytes_total", "Bytes given to the network.").value(s.sent_bytes);
   out.counter("uplink_commands_total", "Commands of the hub.")
-      .value(number(s.commands_obeyed), {{"result", "obeyed"}})
-      .value(number(s.commands_refused), {{"result", "refused"}});
+      .value(s.commands_obeyed, {{"result", "obeyed"}})
+      .value(s.commands_refused, {{"result", "refused"}});
   out.gauge("uplink_trouble", "1: history or outbox cannot be read or written.")
       .value(s.store_trouble.empty() ? 0 : 1);
-  out.gauge("uplink_resident_memory_bytes", "Memory of framewatch uplink.")
-      .value(number(s.resident_bytes));
+  out.gauge("uplink_resident_memory_bytes", "Memory of framewatch uplink.").value(s.resident_bytes);
   out.counter("uplink_cpu_seconds_total", "Processor time of framewatch uplink.").value(s.cpu_s);
 }
 
 void add_history(MetricFamilies& out, const history_status_t& s) {
-  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
-  out.counter("history_samples_total", "Raw samples given to the history.")
-      .value(number(s.raw_samples));
+  out.counter("history_samples_total", "Raw samples given to the history.").value(s.raw_samples);
   out.counter("history_dropped_total", "Dropped because the disk was too slow or failed, by kind.")
-      .value(number(s.raw_dropped), {{"kind", "raw"}})
-      .value(number(s.summary_dropped), {{"kind", "summary"}});
+      .value(s.raw_dropped, {{"kind", "raw"}})
+      .value(s.summary_dropped, {{"kind", "summary"}});
   out.counter("history_written_bytes_total", "Raw samples written, before compression.")
-      .value(number(s.raw_bytes));
-  out.gauge("history_queue_bytes", "Raw samples that wait for the disk.")
-      .value(number(s.raw_queue_bytes));
+      .value(s.raw_bytes);
+  out.gauge("history_queue_bytes", "Raw samples that wait for the disk.").value(s.raw_queue_bytes);
   out.gauge("history_trouble", "1: the history cannot be written.")
       .value(s.raw_trouble.empty() ? 0 : 1, {{"kind", "raw"}})
       .value(s.summary_trouble.empty() ? 0 : 1, {{"kind", "summary"}});
   out.gauge("history_stored_until_timestamp_seconds",
             "Windows that end before this sensor time are in the database.")
-      .value(1e-6 * number(s.summary_until_us));
-  out.gauge("history_stored_bytes", "Size of the history's directory.")
-      .value(number(s.stored_bytes));
+      .value(1e-6 * static_cast<double>(s.summary_until_us));
+  out.gauge("history_stored_bytes", "Size of the history's directory.").value(s.stored_bytes);
   if (s.disk_free_bytes >= 0)
     out.gauge("history_disk_free_bytes", "Free bytes on the disk of the history.")
-        .value(number(s.disk_free_bytes));
+        .value(s.disk_free_bytes);
 }
 
 void add_actions(MetricFamilies& out, const action_status_t& s) {
@@ -318,7 +308,7 @@ void add_reception(MetricFamilies& out, const reception_t& r) {
                                       std::pair{"overflowed", r.datagrams_overflowed},
                                       std::pair{"unfinished", r.messages_unfinished},
                                       std::pair{"queue_full", r.messages_dropped}})
-    out.value(static_cast<double>(count), {{"reason", reason}});
+    out.value(count, {{"reason", reason}});
 }
 
 /// Adds the size and error of the raised changes that have both.

@@ -35,17 +35,19 @@ class MetricFamilies {
   /// Begins a metric. The next values belong to it.
   MetricFamilies& gauge(const char* name, const char* help);
   MetricFamilies& counter(const char* name, const char* help);
-  MetricFamilies& value(double value, const Labels& labels = {});
+  template <typename Number>
+  MetricFamilies& value(Number value, const Labels& labels = {}) {
+    return add_value(static_cast<double>(value), labels);
+  }
   /// Adds the finite values, each with its name in `label`. more: labels of every value.
   template <typename Values>
   MetricFamilies& each(const char* label, const std::vector<std::string>& names,
                        const Values& values, const Labels& more = {}) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto one = static_cast<double>(values[i]);
-      if (!std::isfinite(one)) continue;
+      if (!std::isfinite(static_cast<double>(values[i]))) continue;
       Labels labels{{label, names[i]}};
       labels.insert(labels.end(), more.begin(), more.end());
-      value(one, labels);
+      value(values[i], labels);
     }
     return *this;
   }
@@ -58,6 +60,7 @@ class MetricFamilies {
 
  private:
   MetricFamilies& family(const char* name, const char* help, prometheus::MetricType type);
+  MetricFamilies& add_value(double value, const Labels& labels);
 
   std::vector<prometheus::MetricFamily> families_;
 };

@@ -9,17 +9,16 @@ namespace {
 constexpr const char* kStiffnessChange = "stiffness_change";
 
 void add_page_use(MetricFamilies& out, const PageUse& use) {
-  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
   out.gauge("serve_viewers", "Open pages of framewatch serve.").value(use.viewers);
   out.gauge("serve_connections", "Connections of requests and answers, by state.")
       .value(use.waiting, {{"state", "request"}})
       .value(use.answering, {{"state", "answer"}});
   out.counter("serve_connections_ended_total", "Connections ended by framewatch serve, by reason.")
-      .value(number(use.late_requests), {{"reason", "late_request"}})
-      .value(number(use.late_answers), {{"reason", "late_answer"}})
-      .value(number(use.crowded_out), {{"reason", "crowded"}});
+      .value(use.late_requests, {{"reason", "late_request"}})
+      .value(use.late_answers, {{"reason", "late_answer"}})
+      .value(use.crowded_out, {{"reason", "crowded"}});
   out.counter("serve_viewers_refused_total", "Viewers refused because all places were taken.")
-      .value(number(use.viewers_refused));
+      .value(use.viewers_refused);
 }
 
 }  // namespace
@@ -79,7 +78,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   const ProcessUsage usage = process_usage();
   add_page_use(out, use);
   out.gauge("serve_resident_memory_bytes", "Memory of framewatch serve.")
-      .value(static_cast<double>(usage.resident_bytes));
+      .value(usage.resident_bytes);
   out.counter("serve_cpu_seconds_total", "Processor time of framewatch serve.").value(usage.cpu_s);
   return out.text();
 }
