@@ -10,7 +10,7 @@
 #include "daemon/base/file_digest.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/partial_file.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -13,7 +13,7 @@
 #include "daemon/monitor/events/acknowledge_messages.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/number_text.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -14,7 +14,7 @@
 #include "daemon/base/printable.h"
 #include "daemon/base/random_id.h"
 #include "drivers/files/number_text.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 #include "fleet/serve/commander.h"
 #include "fleet/store/database.h"
 #include "fleet/store/fleet_schema.h"

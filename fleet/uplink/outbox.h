@@ -10,7 +10,7 @@
 #include <framewatch/summary_t.hpp>
 
 #include "daemon/base/sqlite_file.h"
-#include "fleet/message/key.h"
+#include "fleet/message/address.h"
 #include "fleet/uplink/sent_store.h"
 
 namespace framewatch::fleet {

@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/child_process.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fleet/message/key.h"
+#include "fleet/message/address.h"
 #include "fleet/message/message.h"
 
 namespace framewatch::fleet {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/base/sqlite_file.h"
-#include "fleet/message/key.h"
+#include "fleet/message/address.h"
 
 namespace framewatch::fleet {
 

@@ -10,7 +10,7 @@
 #include "daemon/base/process_usage.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/number_text.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 #include "fleet/uplink/outbox.h"
 #include "fleet/uplink/send_window.h"
 

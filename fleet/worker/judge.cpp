@@ -11,8 +11,7 @@
 #include "drivers/files/number_text.h"
 #include "drivers/lcm/message_check.h"
 #include "drivers/lcm/message_types.h"
-#include "fleet/message/key.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 
 namespace framewatch::fleet {
 namespace {

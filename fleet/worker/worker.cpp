@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 #include "fleet/worker/automation.h"
 #include "fleet/worker/judge.h"
 

@@ -9,8 +9,7 @@
 
 #include "daemon/base/clocks.h"
 #include "drivers/files/encoded.h"
-#include "fleet/message/key.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 #include "tests/fleet/worker/worker_fixture.h"
 
 namespace framewatch::fleet {
