@@ -13,7 +13,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// Names of headers (docs/fleet.md).
 namespace header {
-inline constexpr const char* kKey = "Nats-Msg-Id";       ///< key.h, sealed
+inline constexpr const char* kKey = "Nats-Msg-Id";       ///< address.h, sealed
 inline constexpr const char* kType = "Fw-Type";          ///< event_t, toml, json, ...
 inline constexpr const char* kEncoding = "Fw-Encoding";  ///< zstd, or missing
 inline constexpr const char* kVersion = "Fw-Version";    ///< of the sending program
