@@ -244,11 +244,11 @@ void print_reception(const Heard& h) {
   const reception_t& r = *h.reception;
   std::vector<std::string> dropped;
   for (const auto& [count, what] :
-       {std::pair{r.datagrams_elsewhere, "datagrams from other networks"},
-        std::pair{r.datagrams_malformed, "that are no LCM"},
-        std::pair{r.datagrams_overflowed, "by a full receive buffer"},
+       {std::pair{r.datagrams_elsewhere, "datagrams over other interfaces"},
+        std::pair{r.datagrams_malformed, "datagrams that are not LCM"},
+        std::pair{r.datagrams_overflowed, "datagrams in a full receive buffer"},
         std::pair{r.messages_unfinished, "unfinished messages"},
-        std::pair{r.messages_dropped, "messages by a full queue"}})
+        std::pair{r.messages_dropped, "messages in a full queue"}})
     if (count > 0) dropped.push_back(fmt::format("{} {}", count, what));
   if (!dropped.empty()) line("dropped", fmt::format("{}", fmt::join(dropped, ", ")));
 }
@@ -277,7 +277,7 @@ void print_hub(const Heard& h, std::int64_t now_us) {
           ? "nothing acknowledged yet"
           : fmt::format("newest acknowledged {} ago",
                         span_text(1e-6 * static_cast<double>(now_us - s.acknowledged_us)));
-  line("hub", fmt::format("{} wait, {}{}", waiting, newest,
+  line("hub", fmt::format("{} waiting, {}{}", waiting, newest,
                           s.connected != 0 ? "" : ", no connection: " + s.link_trouble));
 }
 
@@ -285,7 +285,7 @@ void print_can(const Heard& h) {
   if (!h.can) return;
   for (std::size_t b = 0; b < h.can->interface.size(); ++b)
     line("can", h.can->state[b] < 0
-                    ? h.can->interface[b] + ": not there"
+                    ? h.can->interface[b] + ": missing"
                     : fmt::format("{}: {:.0f} frames a second, {:.0f} % load", h.can->interface[b],
                                   h.can->frames_hz[b], 100 * h.can->load[b]));
 }
@@ -350,7 +350,7 @@ int status_command(const StatusArguments& a) {
     print_problems(problems);
     if (unit) fmt::print(stderr, "framewatch.service: {}\n", unit_text(*unit));
     fmt::print(stderr,
-               "framewatch status: nothing is heard of framewatch run on {} with prefix {}: "
+               "framewatch status: nothing is heard from framewatch run on {} with prefix {}: run "
                "systemctl status framewatch\n",
                url, config->lcm.prefix);
     return kUnreachable;
@@ -361,8 +361,8 @@ int status_command(const StatusArguments& a) {
   std::vector<std::string> odd = oddities(heard, *config, now_us, words);
   if (wrong)
     odd.push_back(
-        fmt::format("its configuration file is wrong now, it goes on with what it had "
-                    "read before, and would not start again: {}: {}",
+        fmt::format("its configuration file is wrong now: it keeps the previous configuration but "
+                    "would not start again: {}: {}",
                     problems.front().where, problems.front().message));
   if (const std::string why = unit ? unit_oddity(*unit) : ""; !why.empty()) odd.push_back(why);
   if (a.json)
