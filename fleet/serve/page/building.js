@@ -102,7 +102,7 @@ function drawEvents(d) {
   seen.events.replaceChildren(d.events.length ? table(['time', 'severity', 'what'], d.events.map(e => el('tr', {}, cell(null, when(e.time_us)), cell(null, urgencyWord(['changed', 'warning', 'alarm'][Math.min(2, Math.max(0, e.severity))]).lastChild.textContent.replace('changed', 'information'), ', ', kStates[e.state] || '?'), cell(null, e.message, el('span', {className: 'soft'}, ` (${e.kind}${e.place ? ', ' + e.place : ''})`))))) : el('p', {className: 'soft'}, 'none'));
 }
 
-// The plot: the newest time that the building has told of, back by the range.
+// The plot: the selected range up to the newest time of the building.
 async function loadSeries() {
   const d = seen.data;
   if (!d || !seen.parameter) { seen.note.textContent = 'No values yet.'; return; }
@@ -120,7 +120,7 @@ function drawSeries() {
   const p = d.parameters.find(q => q.name === seen.parameter) || {}, unit = s.unit || p.unit || '';
   const values = s.median.filter(v => v !== null), e = engineering(values.length ? Math.max(...values) : 1, unit), scaled = list => list.map(v => v === null ? null : v * e.factor);
   const base = p.baseline !== null && Number.isFinite(p.baseline) ? p.baseline * e.factor : null;
-  // A period that is lacking breaks the line.
+  // A missing period breaks the line.
   const step = s.period_s * s.of, t = [], columns = [[], [], []], from = [s.median, s.q1, s.q3].map(scaled);
   s.t_us.forEach((us, i) => {
     if (i > 0 && (us - s.t_us[i - 1]) / 1e6 > 2.5 * step) { t.push(s.t_us[i - 1] / 1e6 + step); columns.forEach(c => c.push(null)); }
@@ -153,7 +153,7 @@ function drawSeries() {
   seen.box.replaceChildren(seen.plot.root);
   seen.box.setAttribute('aria-label', `${seen.parameter} over time. ${seen.note.textContent}`);
 }
-// A value between two that are lacking has no line.
+// Marks a value between two missing ones, which has no line.
 function alone(plot, series) {
   const v = plot.data[series], out = [];
   for (let i = 0; i < v.length; ++i) if (v[i] !== null && (i === 0 || v[i - 1] === null) && (i + 1 === v.length || v[i + 1] === null)) out.push(i);

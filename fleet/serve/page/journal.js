@@ -1,5 +1,5 @@
 'use strict';
-// Who asked which building for what, and what it answered.
+// The journal: commands to buildings and their answers.
 function openJournal(main) {
   const box = el('div', {className: 'list plain cards'});
   main.replaceChildren(wide('Journal', el('p', {className: 'soft'}, 'The newest 200 commands given from this page. Each building has a journal too.'), box));

@@ -1,5 +1,5 @@
 'use strict';
-// Every building: counts, map, list by severity. Drawn anew when something differs.
+// All buildings: counts, map, list by severity. Redrawn when something changes.
 const overview = {version: '', data: null, behind_us: 0, urgencies: new Set(), words: '', view: null};
 
 function openOverview(main) {
@@ -66,7 +66,7 @@ function filterOverview() {
   overview.empty.textContent = 'No building matches.';
 }
 
-// Latitude and longitude on a plane that is true to angles at the middle; longer ways are not true.
+// Projects latitude and longitude on a plane. Angles are true in the middle; long distances are not.
 function mapPlane(buildings) {
   const middle = (low, high) => 0.5 * (low + high);
   const lat = buildings.map(b => b.latitude), lon = buildings.map(b => b.longitude);
