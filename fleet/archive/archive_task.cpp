@@ -1,13 +1,25 @@
 #include "fleet/archive/archive_task.h"
 
+#include <elf.h>
+#include <fcntl.h>
+#include <link.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <climits>
+#include <cstddef>
+#include <cstring>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
 #include "drivers/files/number_text.h"
+#include "drivers/files/partial_file.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -38,6 +50,47 @@ bool is_key(std::string_view key) {
          is_hexadecimal(key.substr(2 * kKeyPart + 2));
 }
 
+/// Returns false if the previous owner of the lock has removed or replaced the file.
+bool is_still_named(int file, const std::string& path) {
+  struct stat open {
+  }, named{};
+  return ::fstat(file, &open) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+         open.st_ino == named.st_ino && open.st_dev == named.st_dev;
+}
+
+constexpr std::size_t aligned(std::size_t size) {
+  return (size + 3) / 4 * 4;
+}
+
+/// Returns the build id among the notes of a segment; empty if it is missing.
+std::string_view build_id_in(const char* at, std::size_t size) {
+  while (size >= sizeof(ElfW(Nhdr))) {
+    ElfW(Nhdr) note{};
+    std::memcpy(&note, at, sizeof(note));
+    const std::size_t name = sizeof(note), content = name + aligned(note.n_namesz);
+    const std::size_t end = content + aligned(note.n_descsz);
+    if (end > size) return {};
+    if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == sizeof(ELF_NOTE_GNU) &&
+        std::memcmp(at + name, ELF_NOTE_GNU, sizeof(ELF_NOTE_GNU)) == 0)
+      return {at + content, note.n_descsz};
+    at += end;
+    size -= end;
+  }
+  return {};
+}
+
+/// Stores the build id of the first object, which is the program itself.
+int look(dl_phdr_info* info, std::size_t, void* out) {
+  for (int i = 0; i < info->dlpi_phnum; ++i) {
+    const ElfW(Phdr)& segment = info->dlpi_phdr[i];
+    if (segment.p_type != PT_NOTE) continue;
+    const auto* const begin = reinterpret_cast<const char*>(info->dlpi_addr + segment.p_vaddr);
+    const std::string_view id = build_id_in(begin, segment.p_memsz);
+    if (!id.empty()) *static_cast<std::string*>(out) = id;
+  }
+  return 1;
+}
+
 }  // namespace
 
 std::string making_of(const std::string& program, const std::string& config_sha256) {
@@ -65,25 +118,26 @@ std::optional<ArchiveTask> read_manifest_line(std::string_view line, std::string
     return std::nullopt;
   };
   if (words.size() <= kWordsBeforeLogs)
-    return wrong(fmt::format("{} words between tabs, a task has {} and its logs", words.size(),
+    return wrong(fmt::format("{} words between tabs; a task has {} and its logs", words.size(),
                              kWordsBeforeLogs));
   ArchiveTask task;
   const auto number = drivers::parse_integer(words[0]);
   if (!number || *number < 1 || *number > INT_MAX)
-    return wrong(words[0] + ": is no number of a task, from 1");
+    return wrong(words[0] + ": is not the number of a task, from 1");
   task.number = static_cast<int>(*number);
-  if (!is_key(words[1])) return wrong(words[1] + ": is no key, three times 12 hexadecimal digits");
+  if (!is_key(words[1]))
+    return wrong(words[1] + ": is not a key: expected three groups of 12 hexadecimal digits");
   task.key = words[1];
   task.config = words[2];
   task.out = words[3];
   std::int64_t* const times[] = {&task.warm_up_us, &task.from_us, &task.to_us};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto time_us = drivers::parse_integer(words[4 + i]);
-    if (!time_us) return wrong(words[4 + i] + ": is no time in microseconds");
+    if (!time_us) return wrong(words[4 + i] + ": is not a time in microseconds");
     *times[i] = *time_us;
   }
   if (task.warm_up_us > task.from_us || task.from_us >= task.to_us)
-    return wrong("the times of the warm-up, of the begin and of the end are not in order");
+    return wrong("the times must be in the order warm-up, start, end");
   if (task.config.empty() || task.out.empty()) return wrong("a name is empty");
   task.logs.assign(words.begin() + kWordsBeforeLogs, words.end());
   return task;
@@ -111,10 +165,44 @@ std::optional<std::vector<ArchiveTask>> read_manifest(const std::string& path,
     at = end + 1;
   }
   if (out.empty()) {
-    problem = path + ": holds no task";
+    problem = path + ": has no task";
     return std::nullopt;
   }
   return out;
+}
+
+TaskLock::~TaskLock() {
+  if (file_ < 0) return;
+  ::unlink(path_.c_str());
+  ::close(file_);
+}
+
+std::string TaskLock::take(const std::string& path) {
+  for (;;) {
+    const int file = drivers::open_own_file(path, O_RDWR | O_CREAT);
+    if (file < 0) return std::strerror(errno);
+    int locked = -1;
+    do locked = ::flock(file, LOCK_EX);
+    while (locked != 0 && errno == EINTR);
+    const int why = errno;
+    if (locked == 0 && is_still_named(file, path)) {
+      path_ = path;
+      file_ = file;
+      return {};
+    }
+    ::close(file);
+    if (locked != 0) return std::strerror(why);
+  }
+}
+
+std::string program_identity() {
+  static const std::string identity = [] {
+    std::string id;
+    ::dl_iterate_phdr(&look, &id);
+    return id.empty() ? daemon::sha256_of_file("/proc/self/exe")
+                      : daemon::sha256(FRAMEWATCH_VERSION " " + id);
+  }();
+  return identity;
 }
 
 }  // namespace framewatch::fleet

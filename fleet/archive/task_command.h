@@ -7,11 +7,11 @@ namespace framewatch::fleet {
 
 struct TaskArguments {
   std::string manifest;
-  std::vector<int> numbers;  ///< of tasks
+  std::vector<int> numbers;  ///< of the tasks to run
 };
 
-/// framewatch fleet task: does tasks of a manifest that are not done, and says of each one JSON
-/// line. Exit status: 1 when one failed.
+/// Runs `framewatch fleet task`: runs the tasks that are not done and prints one JSON line for
+/// each. Returns the exit status: 1 if a task failed.
 int task(const TaskArguments& arguments);
 
 }  // namespace framewatch::fleet

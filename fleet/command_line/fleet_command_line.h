@@ -2,7 +2,7 @@
 
 namespace framewatch::fleet {
 
-/// What `framewatch fleet ...` and `framewatch uplink` do; returns the exit status of the program.
+/// Runs `framewatch fleet ...` and `framewatch uplink`. Returns the exit status.
 int run_fleet_command_line(int argc, const char* const* argv);
 
 }  // namespace framewatch::fleet

@@ -1,34 +1,43 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 namespace framewatch::daemon {
 class CommandList;
 }
 
 namespace framewatch::fleet {
 
-// Commands of framewatch-fleet: each add_<command> declares one with its options.
+// Each add_<command> declares a command of framewatch-fleet with its options.
 
-// archive_commands.cpp: archives identified anew.
+// fleet_command_line.cpp: archives and the uplink of a building.
 void add_manifest(daemon::CommandList& commands);
 void add_task(daemon::CommandList& commands);
-
-// uplink_commands.cpp, hub_commands.cpp: of a building.
 void add_uplink(daemon::CommandList& commands);
-void add_request(daemon::CommandList& commands);
 
-// hub_commands.cpp: of the hub.
+// hub_commands.cpp: certificates and setup of the hub.
+void add_request(daemon::CommandList& commands);
 void add_setup(daemon::CommandList& commands);
 void add_authority(daemon::CommandList& commands);
 void add_enroll(daemon::CommandList& commands);
 void add_revoke(daemon::CommandList& commands);
 
-// centre_commands.cpp: what the hub does with what buildings say.
+// database_commands.cpp: programs that use the database of a hub.
 void add_worker(daemon::CommandList& commands);
-
-// page_commands.cpp: what people see of it.
 void add_fleet_serve(daemon::CommandList& commands);
 void add_person(daemon::CommandList& commands);
 void add_describe(daemon::CommandList& commands);
 void add_export(daemon::CommandList& commands);
+
+/// Declares --hub, which may be repeated.
+CLI::Option* add_hubs(CLI::App* command, std::vector<std::string>& hubs);
+/// Declares the required argument BUILDING.
+void add_building(CLI::App* command, std::string& building);
 
 }  // namespace framewatch::fleet

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kOpenssl = "/usr/bin/openssl";
 constexpr std::chrono::milliseconds kLook{5};
 
-/// A folder of the call's own, for what must not be seen half-made.
+/// A temporary folder for files that must not be seen before they are complete.
 class WorkFolder {
  public:
   explicit WorkFolder(const fs::path& beside) {
@@ -68,10 +68,10 @@ std::string moved(const std::string& from, const std::string& to) {
 
 std::string put(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;
-  return daemon::sha256_of_file(path).empty() ? path + ": cannot be written" : "";
+  return daemon::sha256_of_file(path).empty() ? path + ": cannot write" : "";
 }
 
-/// Does one thing after the other, until one fails.
+/// Runs steps one after another until one fails.
 template <class... Steps>
 std::string in_turn(const Steps&... steps) {
   std::string problem;
@@ -85,7 +85,7 @@ bool is_address(const std::string& host) {
          ::inet_pton(AF_INET6, host.c_str(), bytes.data()) == 1;
 }
 
-/// Extensions of a certificate of a server, or of a client.
+/// Returns the certificate extensions of a server, or of a client if `hosts` is empty.
 std::string extensions(const std::string& name, const std::vector<std::string>& hosts) {
   std::string names;
   for (const std::string& host : hosts)
@@ -113,12 +113,12 @@ std::string Authority::path(const std::string& name) const {
 
 std::string Authority::make() const {
   if (!drivers::is_absent(path("ca.key")) || !drivers::is_absent(path("ca.pem")))
-    return path("ca.pem") + ": there is an authority already";
+    return path("ca.pem") + ": an authority exists already";
   const ::mode_t before = ::umask(077);
   const WorkFolder work(directory_);
   const std::string problem =
       !work.good()
-          ? directory_ + ": cannot be written"
+          ? directory_ + ": cannot write"
           : in_turn(
                 [&] {
                   return openssl({"req", "-x509", "-newkey", "ed25519", "-nodes", "-days",
@@ -136,7 +136,7 @@ std::string Authority::issue(const std::string& name, const std::vector<std::str
   const WorkFolder work(directory_);
   const std::string problem =
       !work.good()
-          ? directory_ + ": cannot be written"
+          ? directory_ + ": cannot write"
           : in_turn([&] { return make_request(name, work / "key", work / "csr"); },
                     [&] { return put(work / "ext", extensions(name, hosts)); },
                     [&] {
@@ -154,7 +154,7 @@ std::string Authority::issue(const std::string& name, const std::vector<std::str
 std::string Authority::sign(const std::string& building, const std::string& request,
                             const std::string& certificate) const {
   const WorkFolder work(directory_);
-  if (!work.good()) return directory_ + ": cannot be written";
+  if (!work.good()) return directory_ + ": cannot write";
   if (const std::string why = drivers::why_no_file(request); !why.empty())
     return fmt::format("{}: {}", request, why);
   return in_turn(
@@ -167,7 +167,7 @@ std::string Authority::sign(const std::string& building, const std::string& requ
         const auto subject = daemon::read_text_file(work / "subject", error);
         return subject == "subject=CN=" + building + "\n"
                    ? ""
-                   : fmt::format("{}: it must name CN={} and nothing else", request, building);
+                   : fmt::format("{}: its subject must be exactly CN={}", request, building);
       },
       [&] { return put(work / "ext", extensions(building, {})); },
       [&] {

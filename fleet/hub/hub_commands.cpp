@@ -28,7 +28,7 @@ int refuse(const char* command, const std::string& why) {
   return daemon::kBadInput;
 }
 
-/// Tells servers to read users.conf anew. Empty, or which could not be told.
+/// Signals the servers to reload users.conf. Returns an empty text, or which server it failed for.
 std::string reload(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     std::string error;
@@ -37,9 +37,9 @@ std::string reload(const std::vector<std::string>& files) {
     while (!text->empty() && text->back() == '\n') text->pop_back();
     const auto process = drivers::parse_integer(*text);
     if (!process || *process < 2 || *process > INT32_MAX)
-      return fmt::format("{}: no process id", file);
+      return fmt::format("{}: expected a process id", file);
     if (::kill(static_cast<::pid_t>(*process), SIGHUP) != 0)
-      return fmt::format("{}: there is no process {}", file, *process);
+      return fmt::format("{}: process {} does not exist", file, *process);
   }
   return {};
 }
@@ -49,9 +49,8 @@ int told(const char* command, const std::string& what, const UsersFile& users,
   if (const std::string why = reload(files); !why.empty()) return refuse(command, why);
   fmt::print("{}\n", what);
   if (files.empty())
-    fmt::print(
-        "copy {} to every server of the hub and let it read it: nats-server --signal reload\n",
-        users.users_path());
+    fmt::print("Copy {} to every server of the hub and reload it: nats-server --signal reload\n",
+               users.users_path());
   return 0;
 }
 
@@ -127,10 +126,10 @@ int request_command(const RequestArguments& a) {
   if (const std::string rule = problem_of_building(a.building); !rule.empty())
     return refuse("request", fmt::format("the name of a building {}", rule));
   for (const std::string& file : {a.key, a.request})
-    if (!drivers::is_absent(file)) return refuse("request", file + " is there already");
+    if (!drivers::is_absent(file)) return refuse("request", file + " exists already");
   if (const std::string why = make_request(a.building, a.key, a.request); !why.empty())
     return refuse("request", why);
-  fmt::print("{} stays here; {} goes to who runs the hub\n", a.key, a.request);
+  fmt::print("Keep {} here. Send {} to the operator of the hub.\n", a.key, a.request);
   return 0;
 }
 
@@ -145,7 +144,7 @@ int enroll_command(const EnrollArguments& a) {
   users.add(a.building);
   if (why = users.write(); !why.empty()) return refuse("enroll", why);
   return told("enroll",
-              fmt::format("{}: {} goes back to the building, with {}", a.building, certificate,
+              fmt::format("{}: send {} back to the building, with {}", a.building, certificate,
                           (fs::path(a.directory) / "ca.pem").string()),
               users, a.reload);
 }
@@ -156,7 +155,7 @@ int revoke_command(const EnrollArguments& a) {
   if (!users.has(a.building)) return refuse("revoke", a.building + " is not enrolled");
   users.remove(a.building);
   if (const std::string why = users.write(); !why.empty()) return refuse("revoke", why);
-  return told("revoke", a.building + " is not let in any more", users, a.reload);
+  return told("revoke", a.building + " is no longer admitted", users, a.reload);
 }
 
 }  // namespace framewatch::fleet

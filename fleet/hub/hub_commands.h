@@ -5,10 +5,10 @@
 
 namespace framewatch::fleet {
 
-/// Who talks to a hub, and where it is.
+/// The hub servers and the certificates to use with them.
 struct HubAccess {
   std::vector<std::string> hubs;  ///< tls://HOST:PORT
-  std::string directory = ".";    ///< with ca.pem, and NAME.pem and NAME.key of who asks
+  std::string directory = ".";    ///< with ca.pem, and NAME.pem and NAME.key of this program
 };
 
 struct SetupArguments {
@@ -17,33 +17,35 @@ struct SetupArguments {
   bool only_look = false;
 };
 
-/// `framewatch fleet setup`: streams and consumers of the hub as they should be. Returns the exit
-/// status, here and below: 0 when they are, 1 when with only_look they are not, 2 for a failure.
+/// Runs `framewatch fleet setup`: creates and updates the streams and consumers of the hub. Returns
+/// the exit status: 0 if they are correct now, 1 if only_look found differences, 2 on failure.
 int setup_command(const SetupArguments& arguments);
 
 struct AuthorityArguments {
   std::string directory = ".";
-  std::vector<std::string> servers;  ///< NAME=HOST,HOST,... or NAME: which is its host too
+  std::vector<std::string> servers;  ///< NAME=HOST,HOST,... or NAME, if the host has that name
 };
 
-/// `framewatch fleet authority`: the authority, certificates of servers and of the hub's own
-/// programs, and a users.conf that lets no building in. What is there already stays.
+/// Runs `framewatch fleet authority`: creates the authority, the certificates of the servers and of
+/// the hub's programs, and a users.conf without buildings. Keeps existing files. Returns the exit
+/// status.
 int authority_command(const AuthorityArguments& arguments);
 
 struct RequestArguments {
   std::string building, key = "fleet.key", request = "fleet.csr";
 };
 
-/// `framewatch fleet request`, in the building: a private key and the request for a certificate.
+/// Runs `framewatch fleet request` in a building: creates a private key and a certificate request.
+/// Returns the exit status.
 int request_command(const RequestArguments& arguments);
 
 struct EnrollArguments {
   std::string building, request, certificate, directory = ".";
-  std::vector<std::string> reload;  ///< files with process ids of servers to tell (SIGHUP)
+  std::vector<std::string> reload;  ///< files with the process ids of servers to send SIGHUP to
 };
 
-/// `framewatch fleet enroll` and `revoke`, at the hub: signs the request and lets the building in;
-/// no longer lets it in.
+/// Run `framewatch fleet enroll` (signs the request and admits the building) and `revoke` (no
+/// longer admits it) at the hub. Return the exit status.
 int enroll_command(const EnrollArguments& arguments);
 int revoke_command(const EnrollArguments& arguments);
 

@@ -1,6 +1,7 @@
 #include "fleet/hub/users_file.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <sstream>
 
@@ -8,8 +9,8 @@
 
 #include "daemon/base/file_digest.h"
 #include "drivers/files/input_file.h"
-#include "fleet/hub/replace_file.h"
-#include "fleet/message/subject.h"
+#include "drivers/files/partial_file.h"
+#include "fleet/message/address.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 constexpr const char* kList = "buildings";
 constexpr const char* kUsers = "users.conf";
 
-// Of the hub itself; a building may not be called so, since its certificate would be theirs.
+// Reserved for the hub: a building with such a name would have the certificate of a hub program.
 constexpr const char* kRoles[] = {"operator", "worker", "page", "admin"};
 
 constexpr const char* kBeginning =
@@ -98,6 +99,17 @@ std::string UsersFile::write() const {
   if (problem.empty())
     problem = replace_file((std::filesystem::path(directory_) / kList).string(), list);
   return problem;
+}
+
+std::string replace_file(const std::string& path, const std::string& text) {
+  drivers::PartialFile file;
+  if (!file.open(path)) return fmt::format("{}: {}", path, file.error());
+  std::FILE* stream = file.stream();
+  const bool written = stream != nullptr &&
+                       std::fwrite(text.data(), 1, text.size(), stream) == text.size() &&
+                       std::fclose(stream) == 0;
+  if (!written || !file.commit()) return fmt::format("{}: {}", path, file.error());
+  return {};
 }
 
 }  // namespace framewatch::fleet

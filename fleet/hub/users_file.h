@@ -6,19 +6,19 @@
 
 namespace framewatch::fleet {
 
-/// The buildings that a hub lets in, in `DIR/buildings`, a name a line, and the users.conf that its
-/// servers read, which is made of them. Names ascend.
+/// The buildings that a hub admits: `DIR/buildings` with one name a line in ascending order, and
+/// the users.conf of its servers, which is generated from them.
 class UsersFile {
  public:
   explicit UsersFile(std::string directory) : directory_(std::move(directory)) {}
 
-  /// Empty, or why the list cannot be read: with file and line.
+  /// Reads the list. Returns an empty text, or the problem with file and line.
   std::string read();
   const std::vector<std::string>& buildings() const { return buildings_; }
   bool has(const std::string& building) const;
   void add(const std::string& building);
   void remove(const std::string& building);
-  /// Both files, each whole or not at all. Empty, or why not.
+  /// Replaces both files, each atomically. Returns an empty text, or the problem.
   std::string write() const;
   std::string users_path() const;
 
@@ -27,11 +27,14 @@ class UsersFile {
   std::vector<std::string> buildings_;
 };
 
-/// Rule that the name of a building to be let in breaks; empty when it is good. Names of the hub's
-/// own programs are none.
+/// Returns the rule that the name of a building breaks; empty if the name is valid. Names of the
+/// hub's programs are reserved.
 std::string problem_of_building(const std::string& name);
 
-/// users.conf: what each certificate may do (docs/fleet.md).
+/// Returns the text of users.conf: the permissions of each certificate (docs/fleet.md).
 std::string users_text(const std::vector<std::string>& buildings);
+
+/// Replaces a file atomically. Returns an empty text, or "PATH: problem".
+std::string replace_file(const std::string& path, const std::string& text);
 
 }  // namespace framewatch::fleet

@@ -8,28 +8,28 @@
 
 namespace framewatch::fleet {
 
-/// A line to the hub, used by one thread. It never waits, and a connection that is lost comes back
-/// by itself. Tests have one of their own (tests/fleet/support).
+/// A connection to the hub, for use by one thread. Calls never block; a lost connection is restored
+/// automatically. Tests implement it too (tests/fleet/uplink/uplink_fixture.h).
 class Link {
  public:
   virtual ~Link() = default;
 
-  /// Hands a message over; false: there is no connection, or it takes nothing. True says nothing of
-  /// its arrival: that is what a reply is for.
+  /// Hands a message over for sending. Returns false without a connection, or when it is full. True
+  /// does not mean that the message arrived: that is what a reply is for.
   [[nodiscard]] virtual bool publish(const Message& message) = 0;
-  /// Messages of this subject come out of take(), after every new connection too.
+  /// Subscribes to a subject, whose messages take() returns. Survives new connections.
   virtual void listen(const std::string& subject) = 0;
-  /// What has come since the last call, in its order.
+  /// Returns the messages that came since the last call, in order.
   virtual std::vector<Message> take() = 0;
 
-  /// How many connections there have been so far.
+  /// Returns the number of connections made so far.
   virtual std::int64_t connections() const = 0;
-  /// Whether one stands, as far as this side knows.
+  /// Returns true while connected, as far as this side knows.
   virtual bool is_connected() const = 0;
-  /// Why the newest attempt to connect failed, or a permission was denied; empty: neither.
+  /// Returns why the newest attempt to connect failed or a permission was denied; else empty.
   virtual std::string trouble() const = 0;
-  /// Of a subject for replies to this link alone, without the last part: "_INBOX_kobe-03.x7q". What
-  /// is sent to it comes out of take(), without listen().
+  /// Returns the subject for replies to this link without its last part: "_INBOX_kobe-03.x7q".
+  /// take() returns messages to it without listen().
   virtual std::string inbox() const = 0;
 };
 

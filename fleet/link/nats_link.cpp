@@ -6,23 +6,101 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <random>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include <fmt/core.h>
+#include <nats/nats.h>
 
+#include "daemon/base/child_process.h"
 #include "daemon/base/clocks.h"
 #include "drivers/files/descriptor.h"
-#include "fleet/link/certificate_age.h"
-#include "fleet/link/nats_objects.h"
+#include "fleet/message/message.h"
 
 namespace framewatch::fleet {
+
+/// Destroys an object of the NATS library together with its owner.
+template <class Type, void (*destroy)(Type*)>
+struct NatsDestroyer {
+  void operator()(Type* object) const { destroy(object); }
+};
+using NatsOptions = std::unique_ptr<natsOptions, NatsDestroyer<natsOptions, natsOptions_Destroy>>;
+using NatsConnection =
+    std::unique_ptr<natsConnection, NatsDestroyer<natsConnection, natsConnection_Destroy>>;
+using NatsSubscription =
+    std::unique_ptr<natsSubscription, NatsDestroyer<natsSubscription, natsSubscription_Destroy>>;
+using NatsMessage = std::unique_ptr<natsMsg, NatsDestroyer<natsMsg, natsMsg_Destroy>>;
+
 namespace {
 
+/// Converts a message of the library.
+Message message_of(natsMsg* from) {
+  Message out;
+  out.subject = natsMsg_GetSubject(from);
+  if (const char* reply = natsMsg_GetReply(from)) out.reply = reply;
+  if (const int size = natsMsg_GetDataLength(from); size > 0) {
+    const char* data = natsMsg_GetData(from);
+    out.bytes.assign(data, data + size);
+  }
+  const char** names = nullptr;
+  int count = 0;
+  if (natsMsgHeader_Keys(from, &names, &count) == NATS_OK) {
+    for (int i = 0; i < count; ++i)
+      if (const char* value = nullptr; natsMsgHeader_Get(from, names[i], &value) == NATS_OK)
+        out.headers[names[i]] = value;
+    std::free(names);  // NOLINT: the library's rule
+  }
+  return out;
+}
+
+NatsMessage nats_message(const Message& from) {
+  natsMsg* made = nullptr;
+  if (natsMsg_Create(&made, from.subject.c_str(), from.reply.empty() ? nullptr : from.reply.c_str(),
+                     reinterpret_cast<const char*>(from.bytes.data()),
+                     static_cast<int>(from.bytes.size())) != NATS_OK)
+    return nullptr;
+  NatsMessage out(made);
+  for (const auto& [name, value] : from.headers)
+    if (natsMsgHeader_Set(out.get(), name.c_str(), value.c_str()) != NATS_OK) return nullptr;
+  return out;
+}
+
+/// Returns the text of `status` with the library's details on the last failure of this thread.
+std::string last_error(natsStatus status) {
+  const char* detail = nats_GetLastError(nullptr);
+  const std::string text = natsStatus_GetText(status);
+  return detail == nullptr || *detail == '\0' ? text : fmt::format("{}: {}", text, detail);
+}
+
+constexpr const char* kOpenssl = "/usr/bin/openssl";
+constexpr std::chrono::milliseconds kPause{2};
+constexpr int kMaxLooks = 1000;
+
+/// Returns "FILE expired ..." when openssl(1) finds that the certificate (PEM) is over by the
+/// host's clock; else empty, also if it cannot be read. A hub that refuses it does not tell the
+/// client why.
+std::string expired(const std::string& certificate) {
+  std::string error;
+  auto process = daemon::ChildProcess::start(
+      {"x509", "-in", certificate, "-noout", "-out", "/dev/null", "-checkend", "0"}, error,
+      kOpenssl, "/dev/null");
+  for (int i = 0; process && i < kMaxLooks; ++i) {
+    if (const std::optional<int> status = process->ended())
+      return *status == 1 ? fmt::format("{} expired, or the host's clock is wrong", certificate)
+                          : "";
+    std::this_thread::sleep_for(kPause);
+  }
+  return {};
+}
+
 constexpr std::int64_t kMinWait_ms = 250, kMaxWait_ms = 5000;
-// A line that is dead without a word shows within 12 s; oftener would cost more than what is sent.
+// Finds a silently dead connection within 12 s. More pings would cost more than the messages.
 constexpr std::int64_t kPing_ms = 6000, kConnect_ms = 2000, kWrite_ms = 2000;
 constexpr int kPingsWithoutAnswer = 1;
 constexpr std::int64_t kAnew_us = 60'000'000;  // without a connection
@@ -50,11 +128,11 @@ struct NatsLink::State {
   std::atomic<int> listening{0};  ///< subscriptions whose thread may still call back
   std::int64_t open_again_us = INT64_MIN, seen_us = INT64_MIN;  ///< steady clock
 
-  mutable std::mutex mutex;  ///< guards what is below, also against the library's threads
+  mutable std::mutex mutex;  ///< guards the members below, also against the library's threads
   std::vector<Message> waiting;
   std::string trouble, certificate_trouble;
 
-  NatsConnection connection;  ///< last but one: its threads see everything above
+  NatsConnection connection;  ///< after the members above, which its threads use
   std::vector<NatsSubscription> subscriptions;
 
   void ring() {
@@ -93,7 +171,7 @@ struct NatsLink::State {
     auto& state = *static_cast<State*>(self);
     const char* why = nullptr;
     (void)natsConnection_GetLastError(connection, &why);
-    state.say(why == nullptr || *why == '\0' ? "the connection is lost" : why);
+    state.say(why == nullptr || *why == '\0' ? "connection lost" : why);
     state.ring();
   }
   static void on_closed(natsConnection*, void* self) {
@@ -114,7 +192,7 @@ struct NatsLink::State {
   }
 };
 
-/// Files are read anew: a certificate that was renewed is the one that is shown.
+/// Reads the files again, so that it uses a renewed certificate.
 std::string NatsLink::State::connect() {
   natsOptions* made = nullptr;
   if (const natsStatus s = natsOptions_Create(&made); s != NATS_OK) return last_error(s);
@@ -156,17 +234,17 @@ std::string NatsLink::State::connect() {
   const natsStatus status = natsConnection_Connect(&opened, made);
   connection.reset(opened);
   if (status == NATS_OK) on_connected(opened, this);
-  // Somebody who is refused now may be let in later.
+  // A client that is refused now may be admitted later.
   if (status != NATS_OK && status != NATS_NOT_YET_CONNECTED) closed = true;
   if (status == NATS_NOT_YET_CONNECTED)
-    say("no server of it answers, or it lets this certificate not in");
+    say("no hub server answers, or the hub does not admit this certificate");
   else if (status != NATS_OK)
     say(last_error(status));
   for (const std::string& subject : subjects) listen(subject);
   return "";
 }
 
-/// False when the library may still call back: then this must not be destroyed.
+/// Returns false when the library may still call back; then this object must not be destroyed.
 bool NatsLink::State::close() {
   if (connection) {
     natsConnection_Close(connection.get());
@@ -222,8 +300,8 @@ std::vector<Message> NatsLink::take() {
   (void)!::read(state_->wake.get(), &count, sizeof count);
   const std::int64_t now_us = daemon::steady_clock_us();
   if (is_connected() || state_->seen_us == INT64_MIN) state_->seen_us = now_us;
-  // The library gives up for good when it is refused twice, and never reads a certificate that was
-  // renewed. A building that was let in again is not to wait for somebody to start it anew.
+  // The library gives up for good after two refusals and never reads a renewed certificate. Opening
+  // a new connection lets an admitted building back in without a restart.
   const bool anew = state_->closed || now_us - state_->seen_us > kAnew_us;
   if (anew && now_us >= state_->open_again_us) {
     state_->open_again_us = now_us + kMaxWait_ms * 1000;

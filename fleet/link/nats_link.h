@@ -9,18 +9,18 @@
 namespace framewatch::fleet {
 
 struct NatsSettings {
-  std::vector<std::string> hubs;  ///< tls://HOST:PORT
-  std::string name;               ///< what the server calls this connection, and whose inbox it is
+  std::vector<std::string> hubs;     ///< tls://HOST:PORT
+  std::string name;                  ///< name of the connection at the server and in inbox()
   std::string certificate, key, ca;  ///< files (PEM)
 };
 
-/// A line to NATS servers over TLS. Connections come back after 0.25 to 5 s at random.
+/// A link to NATS servers over TLS. Reconnects after a random 0.25 to 5 s.
 class NatsLink : public Link {
  public:
-  static constexpr std::size_t kMaxWaiting = 8192;  ///< messages that take() has not fetched
+  static constexpr std::size_t kMaxWaiting = 8192;  ///< messages waiting for take()
 
-  /// Null, with the reason, when certificate, key or authority cannot be used. No hub need be
-  /// there.
+  /// Opens a link. Returns nullptr and sets `error` if the certificate, key or authority is
+  /// unusable. Does not need a reachable hub.
   static std::unique_ptr<NatsLink> open(const NatsSettings& settings, std::string& error);
   ~NatsLink() override;
   NatsLink(const NatsLink&) = delete;
@@ -34,13 +34,14 @@ class NatsLink : public Link {
   std::string trouble() const override;
   std::string inbox() const override;
 
-  /// Readable while messages wait or the connection has changed: for poll().
+  /// Returns a descriptor for poll(), readable while messages wait or after the connection changed.
   int descriptor() const;
-  /// Messages that were lost because take() was not called for long.
+  /// Returns the number of messages dropped because take() was not called.
   std::int64_t dropped() const;
-  /// Gives what was handed over to the network; waits at most so long. False: it was not taken.
+  /// Sends all messages that were handed over. Returns false if that takes longer than timeout_ms.
   [[nodiscard]] bool flush(int timeout_ms);
-  /// Asks and waits for the first answer; for commands, not for loops. Empty, with the reason.
+  /// Sends a request and waits for the first answer; for commands, not for loops. Returns nullopt
+  /// and sets `error` on failure.
   std::optional<Message> request(const std::string& subject, const Bytes& bytes, int timeout_ms,
                                  std::string& error);
 

@@ -56,11 +56,11 @@ std::optional<Bytes> unpacked(const Message& message, std::size_t most, std::str
     if (message.bytes.size() > most) return fails(fmt::format("more than {} bytes", most));
     return message.bytes;
   }
-  if (encoding != kZstd) return fails("an encoding that is not known");
+  if (encoding != kZstd) return fails("unknown encoding");
   const unsigned long long size =
       ZSTD_getFrameContentSize(message.bytes.data(), message.bytes.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN)
-    return fails("damaged: no zstd");
+    return fails("damaged: not zstd");
   if (size > most) return fails(fmt::format("unpacks to more than {} bytes", most));
   Bytes out(static_cast<std::size_t>(size));
   const std::size_t got =

@@ -7,7 +7,7 @@
 #include "fleet/sds/sds_archive.h"
 #include "fleet/store/database.h"
 #include "fleet/store/fleet_schema.h"
-#include "fleet/view/fetched_samples.h"
+#include "fleet/view/building_view.h"
 #include "fleet/view/rows.h"
 
 namespace framewatch::fleet {
@@ -21,7 +21,7 @@ constexpr const char* kStretches =
     " WHERE ($1 = '' OR b.name = $1) AND ($2 = '' OR r.request = $2) AND r.pieces > 0"
     " GROUP BY b.id, r.request ORDER BY b.name, min(r.came)";
 
-/// Puts one stretch into the folders, and says so. False: it could not be.
+/// Writes one piece of samples into the folders and prints what it did. Returns false on failure.
 bool put(Database& database, const Database::Row& row, const std::string& root) {
   const std::string building = text_at(row, 0), request = text_at(row, 1);
   const auto say = [&](const std::string& text) {
@@ -51,7 +51,7 @@ int export_command(const ExportArguments& a) {
     return daemon::refuse(kExport, problem);
   const auto rows = database.query(kStretches, {a.building, a.request});
   if (!rows) return daemon::refuse(kExport, database.error());
-  if (rows->empty()) return daemon::refuse(kExport, "no raw samples of this were fetched");
+  if (rows->empty()) return daemon::refuse(kExport, "no such raw samples were fetched");
   bool all = true;
   for (const Database::Row& row : *rows) all = put(database, row, a.root) && all;
   return all ? 0 : daemon::kFailed;

@@ -6,11 +6,12 @@ namespace framewatch::fleet {
 
 struct ExportArguments {
   std::string database, root;
-  std::string building;  ///< empty: every one
-  std::string request;   ///< empty: every one
+  std::string building;  ///< empty: all buildings
+  std::string request;   ///< empty: all requests
 };
 
-/// framewatch fleet export: raw samples that were fetched, as miniSEED in the folders of SDS.
+/// Runs `framewatch fleet export`: writes fetched raw samples as miniSEED into SDS folders. Returns
+/// the exit status.
 int export_command(const ExportArguments& arguments);
 
 }  // namespace framewatch::fleet

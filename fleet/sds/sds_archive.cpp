@@ -43,7 +43,7 @@ struct Day {
 };
 struct Samples {
   double rate_hz = 0;
-  std::vector<Sample> all;  ///< those that were there stand first
+  std::vector<Sample> all;  ///< existing samples first
 };
 
 bool is_code(const std::string& code, std::size_t most) {
@@ -52,7 +52,7 @@ bool is_code(const std::string& code, std::size_t most) {
   });
 }
 
-/// Samples of records into `days`. Empty, or why not.
+/// Adds the samples of records to `days`. Returns an empty text, or the problem.
 std::string parse(std::span<const std::uint8_t> bytes, std::map<Day, Samples>& days) {
   std::vector<char> buffer(bytes.begin(), bytes.end());
   for (std::size_t at = 0; at < buffer.size();) {
@@ -60,9 +60,9 @@ std::string parse(std::span<const std::uint8_t> bytes, std::map<Day, Samples>& d
     const int left = static_cast<int>(std::min<std::size_t>(buffer.size() - at, INT32_MAX));
     const int status = msr_parse(buffer.data() + at, left, &parsed, 0, 1, 0);
     const ParsedRecord record(parsed);
-    if (status != MS_NOERROR) return fmt::format("no miniSEED record at byte {}", at);
+    if (status != MS_NOERROR) return fmt::format("expected a miniSEED record at byte {}", at);
     if (record->sampletype != 'i' || !(record->samprate > 0))
-      return fmt::format("the record at byte {} has no integers", at);
+      return fmt::format("the record at byte {} does not hold integers", at);
     const auto* counts = static_cast<const std::int32_t*>(record->datasamples);
     for (std::int64_t i = 0; i < record->numsamples; ++i) {
       const std::int64_t time_us =
@@ -79,8 +79,7 @@ std::string parse(std::span<const std::uint8_t> bytes, std::map<Day, Samples>& d
   return {};
 }
 
-/// In order of time, each once: of two that are less than half a step apart the one that came
-/// first.
+/// Sorts by time. Of two samples less than half a step apart keeps the one that came first.
 void sort_once(Samples& samples) {
   std::stable_sort(samples.all.begin(), samples.all.end(),
                    [](const Sample& a, const Sample& b) { return a.time_us < b.time_us; });
@@ -92,7 +91,7 @@ void sort_once(Samples& samples) {
   samples.all.erase(last, samples.all.end());
 }
 
-/// Of a day since 1970: its year, and its number in the year from 1.
+/// Returns the year of a day since 1970, and the number of the day in that year from 1.
 std::pair<int, int> year_and_day(std::int64_t day) {
   using namespace std::chrono;
   const sys_days date{days(day)};
@@ -144,7 +143,7 @@ SdsOutcome add_to_sds(const std::string& root, std::span<const std::uint8_t> min
     if (out.problem.empty() && !there.empty() &&
         (there.size() > 1 || there.begin()->first != day ||
          there.begin()->second.rate_hz != added.rate_hz))
-      out.problem = "holds another channel, day or rate";
+      out.problem = "the existing file has another channel, day or rate";
     if (!out.problem.empty()) {
       out.problem = fmt::format("{}: {}", path, out.problem);
       return out;

@@ -7,7 +7,7 @@
 
 namespace framewatch::fleet {
 
-/// The files of the page of many buildings, by path.
+/// Returns the files of the page of many buildings by path.
 const std::map<std::string, daemon::WebFile>& fleet_files();
 
 }  // namespace framewatch::fleet

@@ -10,7 +10,6 @@
 #include <fmt/core.h>
 
 #include "daemon/base/served_file.h"
-#include "daemon/page/web/connection_guard.h"
 #include "daemon/page/web/web_admission.h"
 #include "daemon/page/web/web_answer.h"
 #include "daemon/page/web/web_files.h"
@@ -25,7 +24,7 @@ constexpr const char* kCookie = "framewatch_fleet";
 constexpr std::string_view kPostPaths[] = {"/command"};
 constexpr std::string_view kBearer = "Bearer ";
 constexpr int kOtherDescriptors = 64;  // the hub, the database, logs
-// Of the page of one building.
+// Shared with the page of one building.
 constexpr const char* kShared[] = {"/page.css", "/words.js", "/icon.svg", "/uPlot.iife.min.js",
                                    "/uPlot.min.css"};
 
@@ -93,16 +92,16 @@ class FleetServer::Implementation {
     const std::string thrown = drivers::caught([&] { result = self.respond(c, method, url); });
     if (thrown.empty()) return result;
     self.failures_(daemon::steady_clock_us(), thrown);
-    return self.plain(c, 500, "an error of this program; its log says more");
+    return self.plain(c, 500, "internal error: see the log of framewatch fleet serve");
   }
 
   MHD_Result plain(MHD_Connection* c, unsigned code, const std::string& text) {
     return daemon::answer(guard_, c, code, text + "\n", daemon::kPlainText);
   }
 
-  /// Who asks; null: nobody that may. Where nobody is named everybody of this machine may look.
+  /// Returns the person who asks; nullptr if not admitted. Without people, this machine may view.
   const Person* person_of(const daemon::WebRequest& r) const {
-    static const Person kAnybody{"somebody on this machine", Role::viewer, ""};
+    static const Person kAnybody{"anyone on this machine", Role::viewer, ""};
     if (settings_.people.all().empty()) return settings_.web.local() ? &kAnybody : nullptr;
     const std::string bearer = r.authorization.starts_with(kBearer)
                                    ? r.authorization.substr(kBearer.size())
@@ -132,7 +131,7 @@ class FleetServer::Implementation {
     return daemon::answer(guard_, c, made.code, made.text, made.type.c_str());
   }
 
-  /// Replaces the token in the address by a cookie that scripts cannot read.
+  /// Replaces the token in the address with a cookie that scripts cannot read.
   MHD_Result exchange(MHD_Connection* c, const std::string& token) {
     MHD_Response* response = MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
     if (!response) return MHD_NO;
@@ -146,7 +145,7 @@ class FleetServer::Implementation {
 
   MHD_Result file(MHD_Connection* c, const std::string& path) {
     const daemon::WebFile* const found = file_of(path);
-    if (found == nullptr) return plain(c, 404, "not here");
+    if (found == nullptr) return plain(c, 404, "not found");
     if (!settings_.web.files.empty())
       if (const auto text = daemon::read_served_file(settings_.web.files, {path.substr(1)}))
         return daemon::answer(guard_, c, 200, *text, found->type.c_str());

@@ -3,19 +3,19 @@
 #include <memory>
 #include <string>
 
-#include "daemon/page/web/web_settings.h"
+#include "daemon/page/web/web_admission.h"
 #include "fleet/serve/fleet_pages.h"
 #include "fleet/serve/people.h"
 
 namespace framewatch::fleet {
 
 struct FleetServerSettings {
-  daemon::WebSettings web;  ///< address, port, hosts, files and limits; the rest is not used
-  People people;            ///< nobody: who reaches the address, this machine alone, may look
+  daemon::WebSettings web;  ///< uses address, port, hosts, files and limits only
+  People people;            ///< empty: only this machine may view
 };
 
-/// Serves the page of many buildings on threads of its own. Admission is that of the page of one
-/// building (daemon/page/web/web_admission.h), with a token for each person.
+/// Serves the page of many buildings in separate threads. Admits requests as the page of one
+/// building does (daemon/page/web/web_admission.h), with a token for each person.
 class FleetServer {
  public:
   static constexpr unsigned kThreads = 4;
@@ -26,10 +26,11 @@ class FleetServer {
   FleetServer(const FleetServer&) = delete;
   FleetServer& operator=(const FleetServer&) = delete;
 
-  /// Serves on `socket` (of listen_on()) and takes it over. False, with the reason, on failure.
+  /// Serves on `socket` (from listen_on()) and takes ownership of it. Returns false and sets
+  /// `error` on failure.
   [[nodiscard]] bool start(int socket, std::string& error);
   int port() const;
-  /// Ends connections that are overdue. To be called at least once a second.
+  /// Ends overdue connections. Call it at least once a second.
   void sweep();
 
  private:

@@ -9,7 +9,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/page/web/web_admission.h"
 #include "drivers/files/number_text.h"
-#include "fleet/hub/replace_file.h"
+#include "fleet/hub/users_file.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -64,7 +64,7 @@ std::string People::read(const std::string& path) {
     if (!is_digest(words[2])) return problem("a SHA-256 has 64 digits of 0-9 and a-f");
     const bool twice = std::any_of(people_.begin(), people_.end(),
                                    [&](const Person& p) { return p.name == words[0]; });
-    if (twice) return problem("this name stands there already");
+    if (twice) return problem("this name occurs twice");
     people_.push_back({std::string(words[0]), *role, std::string(words[2])});
   }
   return {};

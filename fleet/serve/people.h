@@ -7,7 +7,7 @@
 
 namespace framewatch::fleet {
 
-/// What a person may do: look, or give commands to buildings too.
+/// A viewer may only view; an operator may also give commands to buildings.
 enum class Role { viewer, operator_ };
 const char* role_word(Role role);
 std::optional<Role> role_of(std::string_view word);
@@ -17,24 +17,24 @@ struct Person {
   Role role = Role::viewer;
   std::string token_sha256;  ///< 64 hexadecimal digits
 };
-/// 1 to 64 of letters, digits, . _ @ and -.
+/// Returns true for 1 to 64 letters, digits, . _ @ and -.
 bool is_person_name(std::string_view name);
 
-/// Who may open the page, each with the SHA-256 of a token: a file of lines "NAME ROLE SHA256", #
-/// begins a remark. The tokens themselves are in no file.
+/// The people who may open the page, each with the SHA-256 of a token: a file of lines "NAME ROLE
+/// SHA256"; # starts a comment. Tokens themselves are never stored.
 class People {
  public:
-  /// Reads the file; a line that is none, or a name that stands there twice, is a problem:
-  /// "FILE:LINE: why". Empty: read.
+  /// Reads the file. Returns an empty text, or "FILE:LINE: problem" for a malformed line or a name
+  /// that occurs twice.
   std::string read(const std::string& path);
-  /// Replaces the file as a whole. Empty, or why not.
+  /// Replaces the file atomically. Returns an empty text, or the problem.
   std::string write(const std::string& path) const;
 
-  /// Replaces one of the same name.
+  /// Adds a person or replaces the one of the same name.
   void put(Person person);
-  /// False when there is none of this name.
+  /// Removes a person. Returns false if the name is unknown.
   [[nodiscard]] bool remove(const std::string& name);
-  /// Null when the token is nobody's.
+  /// Returns the person with this token; nullptr if the token is unknown.
   const Person* of_token(const std::string& token) const;
   const std::vector<Person>& all() const { return people_; }
 

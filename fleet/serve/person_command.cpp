@@ -49,7 +49,7 @@ int person_command(const PersonArguments& a) {
   const std::string token = daemon::random_token();
   if (a.remove) {
     if (!people.remove(a.name))
-      return daemon::refuse(kPerson, fmt::format("{}: there is no {}", a.people, a.name));
+      return daemon::refuse(kPerson, fmt::format("{}: has no person {}", a.people, a.name));
   } else {
     people.put({a.name, *role, daemon::sha256(token)});
   }
@@ -63,8 +63,7 @@ int describe_command(const DescribeArguments& a) {
   if (const std::string rule = problem_of_building(a.building); !rule.empty())
     return daemon::refuse(kDescribe, fmt::format("'{}': a building {}", a.building, rule));
   if ((a.network && !is_network_code(*a.network)) || (a.station && !is_station_code(*a.station)))
-    return daemon::refuse(kDescribe,
-                          "codes have A-Z and 0-9: 1 or 2 of a network, 1 to 5 of a station");
+    return daemon::refuse(kDescribe, "codes have A-Z and 0-9: a network 1 or 2, a station 1 to 5");
   Database database;
   if (!database.open(a.database)) return daemon::refuse(kDescribe, database.error());
   if (const std::string problem = upgrade(database); !problem.empty())

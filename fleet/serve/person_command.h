@@ -11,8 +11,8 @@ struct PersonArguments {
   std::string people = "people";  ///< file
   bool remove = false;
 };
-/// framewatch fleet person: gives a person a token for `fleet serve`, and prints it once; or takes
-/// it back.
+/// Runs `framewatch fleet person`: creates and prints a token of a person for `fleet serve`, or
+/// removes the person. Returns the exit status.
 int person_command(const PersonArguments& arguments);
 
 struct DescribeArguments {
@@ -22,7 +22,8 @@ struct DescribeArguments {
   std::optional<double> latitude, longitude;
   bool retired = false, not_retired = false;
 };
-/// framewatch fleet describe: what people say of a building, in the database.
+/// Runs `framewatch fleet describe`: stores the description of a building in the database. Returns
+/// the exit status.
 int describe_command(const DescribeArguments& arguments);
 
 }  // namespace framewatch::fleet

@@ -30,7 +30,7 @@ namespace {
 constexpr const char* kServe = "fleet serve";
 constexpr std::chrono::milliseconds kStep{50};
 
-/// The hub's side, where there is one.
+/// The connection to the hub, if hubs are given.
 struct Desk {
   std::unique_ptr<NatsLink> link;
   std::unique_ptr<Commander> commander;
@@ -39,7 +39,7 @@ struct Desk {
 std::string problem_of(const FleetServeArguments& a, const People& people) {
   const bool local = a.address == "127.0.0.1" || a.address == "::1";
   if (!local && people.all().empty())
-    return a.address + ": others can reach this address, so people are needed (--people)";
+    return a.address + ": other machines can reach this address: name the people with --people";
   return {};
 }
 

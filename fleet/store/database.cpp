@@ -1,12 +1,13 @@
 #include "fleet/store/database.h"
 
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <string_view>
 #include <utility>
 
-#include <libpq-fe.h>
-
 #include <fmt/core.h>
+#include <libpq-fe.h>
 
 namespace framewatch::fleet {
 namespace {
@@ -38,6 +39,29 @@ std::string array_of(const Values& values, Write write) {
     out += write(value);
   }
   return out + "}";
+}
+
+constexpr std::size_t kWord = 4, kHead = 5 * kWord, kElement = 2 * kWord;
+
+std::uint32_t word_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t out = 0;
+  for (std::size_t i = 0; i < kWord; ++i)
+    out = out << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return out;
+}
+
+template <typename Value>
+std::vector<Value> values_of(std::string_view array) {
+  std::vector<Value> out;
+  if (array.size() < kHead || word_at(array, 0) != 1 || word_at(array, kWord) != 0) return out;
+  const std::size_t count = word_at(array, 3 * kWord);
+  if (array.size() != kHead + count * kElement) return out;
+  out.reserve(count);
+  for (std::size_t at = kHead; at < array.size(); at += kElement) {
+    if (word_at(array, at) != kWord) return {};
+    out.push_back(std::bit_cast<Value>(word_at(array, at + kWord)));
+  }
+  return out;
 }
 
 }  // namespace
@@ -85,8 +109,8 @@ struct Database::Connection {
 Database::Database() : connection_(std::make_unique<Connection>()) {}
 Database::~Database() = default;
 
-/// The first line of `why` is the reason; what follows is advice. SQLSTATE: class 22 data
-/// exception, 23 integrity constraint.
+/// Stores the first line of `why` as the error; further lines are advice. SQLSTATE class 22 is a
+/// data exception, 23 an integrity constraint.
 bool Database::fail(const char* why, const char* sql_state) {
   const std::string_view state = sql_state == nullptr ? "" : sql_state;
   of_values_ = state.starts_with("22") || state.starts_with("23");
@@ -178,7 +202,7 @@ bool Database::run_each(const std::string& sql, const std::vector<std::vector<Sq
   std::string why = sent ? "" : PQerrorMessage(pg);
   std::string state;
   bool well = sent;
-  // Every statement's results end with a null pointer; the synchronisation ends them all.
+  // The results of each statement end with a null pointer, all results with the synchronization.
   for (int nothing = 0; is_open() && nothing < 2;) {
     const Result result(PQgetResult(pg), &PQclear);
     if (!result) {
@@ -205,6 +229,21 @@ bool Database::transaction(const std::function<bool()>& work) {
   error_ = why;
   of_values_ = of_values;
   return false;
+}
+
+std::vector<std::int32_t> integers_of(std::string_view array) {
+  return values_of<std::int32_t>(array);
+}
+
+std::vector<float> reals_of(std::string_view array) {
+  return values_of<float>(array);
+}
+
+std::int64_t integer_of(std::string_view number) {
+  if (number.size() == kWord) return static_cast<std::int32_t>(word_at(number, 0));
+  if (number.size() != 2 * kWord) return 0;
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(word_at(number, 0)) << 32 |
+                                   word_at(number, kWord));
 }
 
 }  // namespace framewatch::fleet

@@ -101,7 +101,7 @@ CREATE TABLE flooding (
   PRIMARY KEY (building, hour)
 );
 )sql",
-    // When an event came, so that what is newer than a heartbeat is known; commands and answers.
+    // Arrival of events, to find those newer than a heartbeat; commands and answers.
     R"sql(
 ALTER TABLE building ADD COLUMN retired boolean NOT NULL DEFAULT false,
   ADD COLUMN network text NOT NULL DEFAULT 'XX', ADD COLUMN station text,

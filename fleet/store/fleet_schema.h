@@ -8,15 +8,16 @@
 
 namespace framewatch::fleet {
 
-/// SQL that brings the database of a hub from version i to version i + 1 (docs/fleet.md says what
-/// the tables mean).
+/// Returns the SQL that upgrades the database of a hub from version i to i + 1 (docs/fleet.md
+/// describes the tables).
 std::span<const char* const> fleet_schema();
 
-/// Makes the tables, or brings them to this program's version, each step as one transaction; of
-/// several programs that begin at once one does it. Empty, or why not: a newer program made them.
+/// Creates the tables or upgrades them to this program's version, each step in one transaction.
+/// Safe when several programs start at once. Returns an empty text, or the problem: a failure, or
+/// tables of a newer program.
 std::string upgrade(Database& database);
 
-/// "summary_2026_11": the table with the summaries of the month, in UTC, that a time is in.
+/// The table with the summaries of one UTC month: "summary_2026_11".
 struct Month {
   std::string table;
   std::int64_t from_us = 0, to_us = 0;

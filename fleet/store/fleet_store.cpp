@@ -19,7 +19,7 @@ constexpr const char* kPutEvent =
     "INSERT INTO event (building, kind, id, time_us, state, since_us, severity, place, value,"
     " std_error, unit, message, segment)"
     " VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13) ON CONFLICT DO NOTHING";
-// A period that grew after it was sent is sent again when it is closed.
+// Buildings send a period again if it grew after it was first sent.
 constexpr const char* kPutSummary =
     "INSERT INTO summary (building, period_s, start_us, windows, config, n, median, q1, q3,"
     " std_error) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)"
@@ -47,7 +47,7 @@ constexpr const char* kPutFlood =
     " DO UPDATE SET messages = flooding.messages + excluded.messages,"
     " bytes = flooding.bytes + excluded.bytes";
 
-/// What PostgreSQL takes for text: UTF-8 without NUL; other bytes become a question mark.
+/// Returns text that PostgreSQL accepts: UTF-8 without NUL. Other bytes become question marks.
 std::string text_of(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -128,14 +128,14 @@ std::string FleetStore::id_of(const std::string& building) const {
 
 std::string FleetStore::add(const FleetBatch& batch) {
   of_values_ = false;
-  // Buildings and months first, each for itself: a transaction that waits for another worker's new
-  // building would hold the batch.
+  // Adds buildings and months first, each separately, so that the batch never waits for another
+  // worker's new building.
   if (add_buildings(batch) && add_months(batch) &&
       database_.transaction([&] { return add_all(batch); }))
     return {};
   std::string why = database_.error();
   of_values_ = database_.is_of_values();
-  close();  // what is remembered may be gone
+  close();  // the cached ids may be outdated
   return why;
 }
 
@@ -192,8 +192,8 @@ bool FleetStore::add_buildings(const FleetBatch& batch) {
   return true;
 }
 
-/// A period of up to 300 parameters stays in its row: floats do not compress, and every array that
-/// lies elsewhere costs a look-up when it is read.
+/// Keeps the arrays of up to 300 parameters inside the row: floats do not compress, and each array
+/// outside costs a lookup on reading.
 bool FleetStore::add_months(const FleetBatch& batch) {
   for (const ReceivedSummary& received : batch.summaries) {
     const Month month = month_of(received.summary.start_us);

@@ -24,7 +24,7 @@ struct ReceivedSummary {
   std::string building;
   summary_t summary;
 };
-/// What the hub keeps the newest of.
+/// A message of which the hub keeps only the newest.
 struct ReceivedNewest {
   std::string building, kind, type;
   Bytes content;
@@ -38,7 +38,7 @@ struct ReceivedPiece {
   std::int32_t piece = 0, pieces = 0;
   Bytes content;
 };
-/// A message that breaks a rule, or (reason empty) of a type that this program does not know.
+/// A message that breaks a rule, or, with an empty reason, has an unknown type.
 struct ReceivedOther {
   std::string subject, key, reason, type, version;
   Bytes content;
@@ -48,7 +48,7 @@ struct ReceivedFlood {
   std::int64_t hour_us = 0, messages = 0, bytes = 0;
 };
 
-/// What is stored at once.
+/// Messages that are stored in one transaction.
 struct FleetBatch {
   std::vector<ReceivedEvent> events;
   std::vector<ReceivedSummary> summaries;
@@ -59,29 +59,31 @@ struct FleetBatch {
   std::vector<ReceivedFlood> floods;
 };
 
-/// How many events and periods (by their length, s) there are of a day.
+/// The number of events and of periods (by length, s) of one day.
 struct DayCounts {
   std::int64_t events = 0;
   std::map<std::int64_t, std::int64_t> periods;
 };
 
-/// The database of a hub as it is written, by any number of programs at once. What is there already
+/// Writes the database of a hub. Any number of programs may write at once. Storing a message twice
 /// changes nothing.
 class FleetStore {
  public:
-  /// Opens when it is not, and makes or upgrades the tables. Empty, or why not.
+  /// Opens the database if it is closed and creates or upgrades the tables. Returns an empty text,
+  /// or the problem.
   std::string open(const std::string& where);
   bool is_open() const { return database_.is_open(); }
-  /// All of it or nothing, in one transaction. Empty, or why not: it is to be tried again, unless
-  /// is_of_values().
+  /// Stores a batch in one transaction. Returns an empty text, or the problem; then try again,
+  /// unless is_of_values().
   std::string add(const FleetBatch& batch);
-  /// Whether the last add() failed because of what is in the batch.
+  /// Returns true if the content of the batch caused the last failure of add().
   bool is_of_values() const { return of_values_; }
-  /// Of a building, from a time until before another. Empty when the database is away.
+  /// Counts the events and periods of a building in [from_us, to_us). Returns nullopt if the
+  /// database fails.
   std::optional<DayCounts> counts(const std::string& building, std::int64_t from_us,
                                   std::int64_t to_us);
-  /// What a building said last of a kind that is text; an empty text when it said nothing. Empty
-  /// when the database is away.
+  /// Returns the newest text of a kind from a building; empty if none came. Returns nullopt if the
+  /// database fails.
   std::optional<std::string> newest_text(const std::string& building, const std::string& kind);
   void close();
 
@@ -94,7 +96,7 @@ class FleetStore {
   Database database_;
   bool upgraded_ = false, of_values_ = false;
   std::map<std::string, std::string> ids_;  ///< of buildings, by name
-  std::set<std::string> months_;            ///< tables that are there
+  std::set<std::string> months_;            ///< existing tables
 };
 
 }  // namespace framewatch::fleet

@@ -28,7 +28,7 @@ std::string answer(const std::string& why) {
   return out.dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
-/// A request is a file's name too.
+/// A request id is also a file name.
 bool is_request(const std::string& request) {
   const auto allowed = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
@@ -37,11 +37,11 @@ bool is_request(const std::string& request) {
          std::all_of(request.begin(), request.end(), allowed);
 }
 
-/// Empty, with the reason, when the command names no stretch of time.
+/// Returns the time range of a command. Returns nullopt and sets `why` if it is missing or invalid.
 std::optional<TimeRange> range_of(const json& document, std::int64_t longest_us, std::string& why) {
   TimeRange out;
   if (!document.is_object()) {
-    why = "no JSON object with from_us and to_us";
+    why = "expected a JSON object with from_us and to_us";
     return std::nullopt;
   }
   for (const auto& [name, value] : {std::pair("from_us", &out.from_us), {"to_us", &out.to_us}}) {
@@ -82,7 +82,7 @@ std::string CommandDesk::obey(std::string_view verb, const Message& command, std
   if (const auto before = store_.journal(request))
     return answer(before->outcome.starts_with("done") ? "" : before->outcome);
   if (!store_.note({request, std::string(verb), who, host_us, "begun"}))
-    return refuse("the journal cannot be written: " + store_.error());
+    return refuse("cannot write the journal: " + store_.error());
   const std::string why = carry_out(verb, command);
   (void)store_.conclude(request, why.empty() ? "done" : why);
   daemon::log(daemon::LogLevel::notice,
@@ -97,19 +97,20 @@ std::string CommandDesk::check(std::string_view verb, const Message& command,
                                std::int64_t host_us) const {
   const auto& accept = settings_.accept;
   if (std::find(accept.begin(), accept.end(), verb) == accept.end())
-    return "this building does not accept it ([fleet] accept)";
+    return "this building does not accept this command ([fleet] accept)";
   if (command.bytes.size() > kMaxBytes)
-    return fmt::format("a command has {} bytes at most", kMaxBytes);
+    return fmt::format("a command may have at most {} bytes", kMaxBytes);
   if (!is_request(command.header(header::kRequest)))
     return "Fw-Request must be 1 to 64 of a-z, 0-9 and -";
   const std::string who = command.header(header::kWho);
-  if (who.empty() || who.size() > kLongestWho) return "Fw-Who must say who asks, in 128 bytes";
+  if (who.empty() || who.size() > kLongestWho)
+    return "Fw-Who must name the person in at most 128 bytes";
   const auto until = drivers::parse_integer(command.header(header::kUntil));
   if (!until || *until > kLatest_us / daemon::kSecond_us || *until < 0)
     return "Fw-Until must be a time in s since 1970";
   const std::int64_t left_us = *until * daemon::kSecond_us - host_us;
   if (left_us < 0)
-    return fmt::format("it came {:.0f} s too late, by the clock of the building",
+    return fmt::format("the command came {:.0f} s too late by the building's clock",
                        -1e-6 * static_cast<double>(left_us));
   if (left_us > kFarthest_us) return "Fw-Until is more than an hour ahead of the building's clock";
   return {};
@@ -122,15 +123,15 @@ std::string CommandDesk::carry_out(std::string_view verb, const Message& command
   const auto time = range_of(document_of(command), kLongestOther_us, why);
   if (!time) return why;
   const bool stored = verb == "resend" ? store_.forget_between(*time) : store_.want_minutes(*time);
-  if (!stored) return "it cannot be stored: " + store_.error();
+  if (!stored) return "cannot store the command: " + store_.error();
   changed_ = true;
   return {};
 }
 
-/// Who gave the command stands before what the message says of itself.
+/// Replaces the author in the message with the person who gave the command.
 std::string CommandDesk::acknowledge(const Message& command) {
   auto request = drivers::decoded<acknowledge_t>(command.bytes);
-  if (!request) return "no acknowledge_t";
+  if (!request) return "expected an acknowledge_t";
   request->who = command.header(header::kWho);
   return acknowledge_(*request);
 }
@@ -156,7 +157,7 @@ std::string CommandDesk::raw(const Message& command) {
   }
   if (store_.raw_requests().size() >= kMaxRaw)
     return fmt::format("{} requests for raw samples are open already", kMaxRaw);
-  return store_.add_raw(request) ? "" : "it cannot be stored: " + store_.error();
+  return store_.add_raw(request) ? "" : "cannot store the command: " + store_.error();
 }
 
 }  // namespace framewatch::fleet

@@ -16,23 +16,23 @@
 
 namespace framewatch::fleet {
 
-/// Obeys the commands of the hub that [fleet] accept names, once each, and keeps who asked for what
-/// in the journal. An answer is JSON: {"ok": true} or {"ok": false, "why": "..."}.
+/// Executes the commands of the hub that [fleet] accept allows, each once, and records them in the
+/// journal. An answer is JSON: {"ok": true} or {"ok": false, "why": "..."}.
 class CommandDesk {
  public:
   static constexpr std::size_t kMaxBytes = 65536, kMaxRaw = 8;
   static constexpr std::int64_t kMaxRaw_bytes = 256'000'000;
-  /// Empty: the daemon has obeyed; else why not.
+  /// Sends the request to the daemon. Returns an empty text, or why the daemon refused it.
   using Acknowledge = std::function<std::string(const acknowledge_t& request)>;
 
   /// All must outlive this.
   CommandDesk(const daemon::FleetSettings& settings, SentStore& store, Acknowledge acknowledge)
       : settings_(settings), store_(store), acknowledge_(std::move(acknowledge)) {}
 
-  /// What to answer; obeys. `verb`: of the subject. host_us: this machine's clock.
+  /// Executes a command and returns the answer. verb: from the subject. host_us: host clock.
   std::string obey(std::string_view verb, const Message& command, std::int64_t host_us);
 
-  /// Whether something else is to be sent than before; once.
+  /// Returns true once after a command that changed what must be sent.
   bool changed_what_waits() { return std::exchange(changed_, false); }
   std::int64_t obeyed() const { return obeyed_; }
   std::int64_t refused() const { return refused_; }

@@ -5,44 +5,47 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include <framewatch/parameter_table_t.hpp>
-
+#include "daemon/monitor/service/latest_messages.h"
 #include "fleet/message/message.h"
 
 namespace framewatch::fleet {
 
-/// What the hub keeps the newest of (stream FW_LAST): when which is due. service every 60 s and
-/// when an event begins or ends, what is acknowledged when that changes, all but service at the
-/// start, after every new connection, when the configuration has changed, and every 10 min, texts
-/// of our own every day. Times are of a clock that is never set.
+/// Decides when the messages of which the hub keeps only the newest (stream FW_LAST) are sent:
+///
+///   service        every 60 s, and when an event begins or ends
+///   acknowledged   as the others, and when it changes
+///   others         after restart(), when the configuration changes, and every 10 min
+///   texts          after restart(), when the configuration changes, and every day
+///
+/// Call update() with each message and due() until it returns nullopt. Times are of a monotonic
+/// clock.
 class NewestMessages {
  public:
   static constexpr std::int64_t kService_us = 60'000'000, kOther_us = 600'000'000,
                                 kText_us = 86'400'000'000;
 
-  /// LCM channels without the prefix.
-  static const std::vector<std::string>& channels();
+  /// Returns the messages that update() takes.
+  static std::vector<daemon::DaemonMessage> messages();
 
-  /// A message of LCM; bytes that are not of the channel's type are left alone.
-  void heard(std::string_view channel, std::span<const std::uint8_t> bytes);
-  /// A text of our own, of kind config or inventory.
-  void text(const std::string& kind, const std::string& type, const std::string& content);
-  /// Everything is due again.
-  void again();
+  /// Stores the payload of `changed`, which `latest` has just decoded. Ignores other messages.
+  void update(const daemon::LatestMessages& latest, daemon::DaemonMessage changed,
+              std::span<const std::uint8_t> payload);
+  /// Stores a text of the uplink itself. kind: "config" or "inventory". type: "toml", "json".
+  void set_text(const std::string& kind, const std::string& type, const std::string& content);
+  /// Makes every message due, as after a new connection.
+  void restart();
 
   struct Due {
     std::string kind, type;
     Bytes content;
   };
-  /// The next one that is due; it counts as given.
+  /// Returns a message that is due and counts it as sent; nullopt when none is due.
   std::optional<Due> due(std::int64_t now_us);
 
-  /// Of the newest service or parameter table; empty when none has come.
+  /// Returns the digest in the newest service_t or parameter_table_t; empty before the first.
   const std::string& config_sha256() const { return config_sha256_; }
-  const std::optional<parameter_table_t>& table() const { return table_; }
 
  private:
   struct Newest {
@@ -50,14 +53,11 @@ class NewestMessages {
     Bytes content;
     std::optional<std::int64_t> given_us;
   };
-  void take_service(std::span<const std::uint8_t> bytes);
-  void take_acknowledged(std::span<const std::uint8_t> bytes);
   void config_is(const std::string& sha256);
 
   std::map<std::string, Newest> newest_;  ///< by kind
-  std::optional<parameter_table_t> table_;
   std::string config_sha256_;
-  std::vector<std::int64_t> raised_, acknowledged_;  ///< ids of events, as they were heard last
+  std::vector<std::int64_t> raised_, acknowledged_;  ///< ids of events in the newest messages
 };
 
 }  // namespace framewatch::fleet

@@ -3,11 +3,21 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/event_messages.h"
+#include "daemon/base/utc_time.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_schema.h"
 
@@ -39,6 +49,95 @@ event_t event_of(const SqliteStatement& s) {
   return e;
 }
 
+using daemon::kDay_us;
+using daemon::SqliteStatement;
+
+constexpr std::int64_t kDays = 30;
+constexpr const char* kFormat = "framewatch.inventory/1";
+
+struct Day {
+  std::int64_t events = 0;
+  std::map<std::int64_t, std::int64_t> periods;  ///< count by length, s
+};
+
+using daemon::SqliteStatement;
+
+constexpr const char* kParameters =
+    "SELECT name, unit, observable, boxed, outliers, mean, std_error, min, max, q1, median, q3,"
+    " whisker_low, whisker_high FROM parameter JOIN summary ON summary.parameter = parameter.id"
+    " AND period_s = ? AND start_us = ? ORDER BY parameter.id";
+constexpr const char* kChannels =
+    "SELECT received, lost, late, repaired, rejected, stuck, clipped, noise FROM channel"
+    " JOIN channel_summary ON channel_summary.channel = channel.id AND period_s = ?"
+    " AND start_us = ? ORDER BY channel.id";
+
+struct Row {
+  std::array<std::int32_t, 3> counts{};
+  std::array<float, 9> values{};
+};
+
+Row missing() {
+  Row out;
+  out.values.fill(std::numeric_limits<float>::quiet_NaN());
+  return out;
+}
+
+void append(summary_t& to, const Row& row) {
+  int at = 0;
+  for (auto* list : {&to.observable, &to.boxed, &to.outliers})
+    list->push_back(row.counts[static_cast<std::size_t>(at++)]);
+  at = 0;
+  for (auto* list : {&to.mean, &to.std_error, &to.min, &to.max, &to.q1, &to.median, &to.q3,
+                     &to.whisker_low, &to.whisker_high})
+    list->push_back(row.values[static_cast<std::size_t>(at++)]);
+}
+
+std::string config_of(daemon::SqliteFile& history, std::int64_t until_us) {
+  SqliteStatement s = history.prepare(
+      "SELECT sha256 FROM config WHERE first_us < ? ORDER BY first_us DESC LIMIT 1");
+  s.bind(1, until_us);
+  return s.row() ? s.text(0) : "";
+}
+
+void add_parameters(daemon::SqliteFile& history, const SummaryKey& key,
+                    const std::optional<parameter_table_t>& table, summary_t& out) {
+  std::vector<std::pair<std::string, std::string>> names;
+  std::map<std::pair<std::string, std::string>, Row> rows;
+  SqliteStatement s = history.prepare(kParameters);
+  s.bind(1, key.period_s).bind(2, key.start_us);
+  while (s.row()) {
+    Row row;
+    int column = 2;
+    for (std::int32_t& count : row.counts) count = static_cast<std::int32_t>(s.integer(column++));
+    for (float& value : row.values) value = static_cast<float>(s.number(column++));
+    names.emplace_back(s.text(0), s.text(1));
+    rows[names.back()] = row;
+  }
+  if (table && table->config_sha256 == out.config_sha256) {
+    names.clear();
+    for (std::size_t p = 0; p < table->name.size(); ++p)
+      names.emplace_back(table->name[p], table->unit[p]);
+  }
+  for (const auto& name : names) {
+    const auto found = rows.find(name);
+    append(out, found == rows.end() ? missing() : found->second);
+  }
+  out.parameters = static_cast<std::int32_t>(out.mean.size());
+}
+
+void add_channels(daemon::SqliteFile& history, const SummaryKey& key, summary_t& out) {
+  SqliteStatement s = history.prepare(kChannels);
+  s.bind(1, key.period_s).bind(2, key.start_us);
+  while (s.row()) {
+    int column = 0;
+    for (auto* list : {&out.received, &out.lost, &out.late, &out.repaired, &out.rejected,
+                       &out.stuck, &out.clipped})
+      list->push_back(s.integer(column++));
+    out.noise.push_back(s.number(column));
+  }
+  out.channels = static_cast<std::int32_t>(out.noise.size());
+}
+
 }  // namespace
 
 std::vector<TimeRange> united(std::vector<TimeRange> ranges) {
@@ -55,7 +154,7 @@ std::vector<TimeRange> united(std::vector<TimeRange> ranges) {
   return out;
 }
 
-/// A database that was set aside is another file afterwards.
+/// Opens the database again if it was replaced by another file.
 std::string Outbox::open() {
   const std::string path = daemon::summary_file(directory_);
   struct ::stat now {};
@@ -112,7 +211,7 @@ std::string Outbox::look(SentStore& sent, Waiting& out) {
   return {};
 }
 
-/// Both tables in the order of their keys, step by step.
+/// Compares both tables in the order of their keys.
 void Outbox::look_for_events(SentStore& sent, Waiting& out) {
   SqliteStatement all = file_.prepare(
       "SELECT kind, id, time_us, state FROM event"
@@ -144,8 +243,8 @@ void Outbox::look_for_events(SentStore& sent, Waiting& out) {
   }
 }
 
-/// A period is over when a later window has been stored. One that grew afterwards, because the
-/// sensors' clock was set back, is sent again when it is closed for good.
+/// Finds closed periods. A period is closed when a later window is stored. If it grows afterwards,
+/// because the sensors' clock was set back, it is sent again.
 void Outbox::look_for_periods(SentStore& sent, std::int64_t period_s, const TimeRange& time,
                               Waiting& out) {
   constexpr const char* kRange = " WHERE period_s = ? AND start_us >= ? AND start_us < ?";
@@ -181,6 +280,50 @@ std::vector<TimeRange> Outbox::wanted_minutes(SentStore& sent) {
     out.push_back({s.integer(1) - kBeforeEvent_us, s.integer(1) + kAfterEvent_us});
   }
   return united(std::move(out));
+}
+
+std::string inventory(daemon::SqliteFile& history, std::int64_t newest_us, std::int64_t least_s) {
+  const std::int64_t to = newest_us / kDay_us + 1, from = to - kDays;
+  std::map<std::int64_t, Day> days;  // by number since 1970
+  SqliteStatement events = history.prepare(
+      "SELECT time_us / ?, count(*) FROM event WHERE time_us >= ? AND time_us < ? GROUP BY 1");
+  events.bind(1, kDay_us).bind(2, from * kDay_us).bind(3, to * kDay_us);
+  while (events.row()) days[events.integer(0)].events = events.integer(1);
+  SqliteStatement periods = history.prepare(
+      "SELECT start_us / ?, period_s, count(*) FROM period WHERE start_us >= ? AND start_us < ?"
+      " AND period_s >= ? AND start_us + period_s * 1000000 <= ? GROUP BY 1, 2");
+  periods.bind(1, kDay_us).bind(2, from * kDay_us).bind(3, to * kDay_us).bind(4, least_s);
+  periods.bind(5, newest_us);
+  while (periods.row()) days[periods.integer(0)].periods[periods.integer(1)] = periods.integer(2);
+  if (history.failed()) return {};
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [number, day] : days) {
+    nlohmann::json counts = nlohmann::json::object();
+    for (const auto& [period_s, count] : day.periods) counts[fmt::format("{}", period_s)] = count;
+    list.push_back({{"day", daemon::utc_text(number * kDay_us).substr(0, 10)},
+                    {"from_us", number * kDay_us},
+                    {"events", day.events},
+                    {"periods", counts}});
+  }
+  return nlohmann::json{{"format", kFormat}, {"days", list}}.dump();
+}
+
+std::optional<summary_t> summary_message(daemon::SqliteFile& history, const SummaryKey& key,
+                                         const std::optional<parameter_table_t>& table) {
+  summary_t out{};
+  out.start_us = key.start_us;
+  out.period_s = static_cast<std::int32_t>(key.period_s);
+  SqliteStatement period =
+      history.prepare("SELECT windows FROM period WHERE period_s = ? AND start_us = ?");
+  period.bind(1, key.period_s).bind(2, key.start_us);
+  if (!period.row()) return std::nullopt;
+  out.windows = static_cast<std::int32_t>(period.integer(0));
+  period.again();
+  out.config_sha256 = config_of(history, key.start_us + key.period_s * daemon::kSecond_us);
+  add_parameters(history, key, table, out);
+  add_channels(history, key, out);
+  if (history.failed()) return std::nullopt;
+  return out;
 }
 
 }  // namespace framewatch::fleet

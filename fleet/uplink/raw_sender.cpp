@@ -9,7 +9,8 @@
 
 #include <fmt/core.h>
 
-#include "fleet/message/subject.h"
+#include "daemon/base/child_process.h"
+#include "fleet/message/address.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -34,6 +35,43 @@ Bytes piece_of(const std::string& path, std::int64_t number) {
   return out;
 }
 
+class HistoryExporter : public RawExporter {
+ public:
+  explicit HistoryExporter(std::string config) : config_(std::move(config)) {}
+
+  std::string begin(const RawRequest& request, const std::string& path) override {
+    std::error_code none;
+    const auto self = std::filesystem::read_symlink("/proc/self/exe", none);
+    const auto seconds = [](std::int64_t us) {
+      return fmt::format("{:.6f}", 1e-6 * static_cast<double>(us));
+    };
+    std::vector<std::string> arguments{"history", config_,
+                                       "--from",  seconds(request.time.from_us),
+                                       "--to",    seconds(request.time.to_us),
+                                       "--raw",   path};
+    for (const std::string& channel : request.channels) {
+      arguments.emplace_back("--channel");
+      arguments.push_back(channel);
+    }
+    std::string error;
+    process_ = daemon::ChildProcess::start(std::move(arguments), error,
+                                           (self.parent_path() / "framewatch").string());
+    return process_ ? "" : "cannot start framewatch history: " + error;
+  }
+
+  std::optional<std::string> ended() override {
+    const std::optional<int> status = process_ ? process_->ended() : std::optional<int>(1);
+    if (!status) return std::nullopt;
+    process_.reset();
+    if (*status == 0) return "";
+    return fmt::format("framewatch history found no samples, or failed (status {})", *status);
+  }
+
+ private:
+  std::string config_;
+  std::optional<daemon::ChildProcess> process_;
+};
+
 }  // namespace
 
 RawSender::RawSender(std::string directory, std::string building, double kbit_s, SentStore& store,
@@ -44,7 +82,7 @@ RawSender::RawSender(std::string directory, std::string building, double kbit_s,
       store_(store),
       exporter_(std::move(exporter)) {}
 
-/// A file that is whole from before goes on; one that is made anew is sent from its beginning.
+/// Continues with a complete file from before; sends a new file from its beginning.
 void RawSender::begin() {
   const std::vector<RawRequest> all = store_.raw_requests();
   if (all.empty()) return;
@@ -62,7 +100,7 @@ void RawSender::begin_sending() {
   const std::int64_t size = size_of(path_);
   if (size <= 0) return give_up("the file of raw samples is gone");
   if (size > request_.most_bytes)
-    return give_up(fmt::format("it would be {} bytes, more than the {} that were allowed", size,
+    return give_up(fmt::format("the samples have {} bytes, more than the {} allowed", size,
                                request_.most_bytes));
   done_.assign(static_cast<std::size_t>((size + kPiece_bytes - 1) / kPiece_bytes), false);
   for (const std::int64_t piece : store_.pieces_acknowledged(request_.request))
@@ -78,7 +116,7 @@ void RawSender::give_up(const std::string& why) {
   state_ = State::giving_up;
 }
 
-/// outcome: empty: every piece has arrived.
+/// Ends the request. outcome: the problem; empty if all pieces arrived.
 void RawSender::finish(const std::string& outcome) {
   trouble_ = outcome;
   (void)store_.conclude(request_.request,
@@ -94,7 +132,7 @@ std::optional<Outgoing> RawSender::piece(std::int64_t number, const std::string&
   const bool gives_up = state_ == State::giving_up;
   Bytes bytes = gives_up ? Bytes(why_none_.begin(), why_none_.end()) : piece_of(path_, number);
   if (bytes.empty()) {
-    give_up("the file of raw samples cannot be read");
+    give_up("cannot read the file of raw samples");
     return std::nullopt;
   }
   Outgoing out;
@@ -146,6 +184,10 @@ void RawSender::acknowledged(const Outgoing& piece) {
 
 std::int64_t RawSender::waiting() const {
   return std::count(done_.begin(), done_.end(), false);
+}
+
+std::unique_ptr<RawExporter> history_exporter(std::string config) {
+  return std::make_unique<HistoryExporter>(std::move(config));
 }
 
 }  // namespace framewatch::fleet

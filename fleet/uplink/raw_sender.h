@@ -12,37 +12,36 @@
 
 namespace framewatch::fleet {
 
-/// Makes a file of raw samples beside the caller; one at a time.
+/// Exports raw samples into a file in the background, one at a time.
 class RawExporter {
  public:
   virtual ~RawExporter() = default;
-  /// Begins; empty, or why not.
+  /// Starts an export. Returns an empty text, or the problem.
   virtual std::string begin(const RawRequest& request, const std::string& path) = 0;
-  /// Empty while it goes on; then what went wrong, or an empty text.
+  /// Returns nullopt while the export runs, then its problem or an empty text.
   virtual std::optional<std::string> ended() = 0;
 };
 
-/// Sends raw samples that the hub asked for, piece by piece, at no more than raw_kbit_s. A piece
-/// that was acknowledged is not sent again, after a restart neither. Where there is nothing to send
-/// a piece 0 of 0 says why.
+/// Sends the raw samples that the hub requested, piece by piece, at no more than raw_kbit_s. Does
+/// not send acknowledged pieces again, even after a restart. When there is nothing to send, a piece
+/// 0 of 0 has the reason.
 class RawSender {
  public:
   static constexpr std::int64_t kPiece_bytes = 128 * 1024, kRefused_us = 60'000'000;
   static constexpr std::size_t kUnderWay = 4;
 
-  /// directory: where the files are kept while they are sent. `store` must outlive this.
+  /// directory: for the files while they are sent. `store` must outlive this.
   RawSender(std::string directory, std::string building, double kbit_s, SentStore& store,
             std::unique_ptr<RawExporter> exporter);
 
-  /// The next piece that may go out now; empty when there is none. `steady_us` is of a clock that
-  /// is never set.
+  /// Returns the next piece, or nullopt if no piece may be sent now. steady_us: monotonic clock.
   std::optional<Outgoing> next(std::int64_t steady_us, const std::string& config_sha256,
                                const SendWindow& window);
-  /// The hub has this piece.
+  /// Notes that the hub has this piece.
   void acknowledged(const Outgoing& piece);
-  /// Pieces that wait, those under way included; of the request that is being sent.
+  /// Returns the pieces of the current request that are not acknowledged.
   std::int64_t waiting() const;
-  /// Why the newest request came to nothing; empty: it did not.
+  /// Returns why the newest request failed; empty if it did not.
   const std::string& trouble() const { return trouble_; }
 
  private:
@@ -54,7 +53,7 @@ class RawSender {
   std::optional<Outgoing> piece(std::int64_t number, const std::string& config_sha256);
 
   std::string directory_, building_;
-  double bytes_us_;  ///< allowed in a microsecond
+  double bytes_us_;  ///< allowed bytes per microsecond
   SentStore& store_;
   std::unique_ptr<RawExporter> exporter_;
   State state_ = State::idle;
@@ -65,7 +64,7 @@ class RawSender {
   std::int64_t next_us_ = INT64_MIN, look_us_ = INT64_MIN;
 };
 
-/// `framewatch history`, the program beside this one, as a process of its own. config: the
+/// Returns an exporter that runs `framewatch history`, the program in the same folder. config: the
 /// configuration file.
 std::unique_ptr<RawExporter> history_exporter(std::string config);
 

@@ -124,7 +124,7 @@ bool SentStore::forget_newest(std::int64_t span_us) {
   const std::optional<std::int64_t> newest = newest_us();
   if (!newest) return true;
   return file_.transaction([&] {
-    // A time below nought: not acknowledged, as far as is known now.
+    // A negative time means: not known to be acknowledged.
     for (const char* sql :
          {"UPDATE sent_event SET acknowledged_us = -acknowledged_us WHERE acknowledged_us > ?",
           "UPDATE sent_period SET acknowledged_us = -acknowledged_us WHERE acknowledged_us > ?"}) {

@@ -10,11 +10,9 @@
 #include "daemon/base/process_usage.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/number_text.h"
-#include "drivers/lcm/message_check.h"
-#include "fleet/message/subject.h"
-#include "fleet/uplink/inventory.h"
-#include "fleet/uplink/summary_message.h"
-#include "fleet/uplink/verdict.h"
+#include "fleet/message/address.h"
+#include "fleet/uplink/outbox.h"
+#include "fleet/uplink/send_window.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -45,22 +43,25 @@ Uplink::Uplink(UplinkSettings settings, Link& link, CommandDesk::Acknowledge ack
 }
 
 std::vector<std::string> Uplink::channels() {
-  std::vector<std::string> out = NewestMessages::channels();
-  out.emplace_back("EVENT");
-  return out;
+  std::vector<daemon::DaemonMessage> messages = NewestMessages::messages();
+  messages.push_back(daemon::DaemonMessage::event);
+  return daemon::LatestMessages("").channels(messages);
 }
 
 void Uplink::heard(std::string_view channel, std::span<const std::uint8_t> bytes) {
-  newest_.heard(channel, bytes);
-  if (channel != "EVENT") return;
-  auto event = drivers::decoded<event_t>(bytes);
-  if (!event) return;
+  const auto changed = latest_.update(channel, bytes);
+  if (!changed) return;
+  newest_.update(latest_, *changed, bytes);
+  if (changed == daemon::DaemonMessage::event) hear_event(*latest_.event);
+}
+
+void Uplink::hear_event(const event_t& event) {
   if (live_.size() >= kMaxLive) {
     live_.pop_front();  // the history has it
     ++lost_live_;
     look_again_ = true;
   }
-  live_.push_back(std::move(*event));
+  live_.push_back(event);
 }
 
 void Uplink::step(Instant now) {
@@ -87,7 +88,7 @@ void Uplink::hear_link(Instant now) {
   if (link_.connections() == connections_) return;
   connections_ = link_.connections();
   rewind_ = true;
-  newest_.again();
+  newest_.restart();
   window_.reconnected(now.steady_us);
 }
 
@@ -101,7 +102,7 @@ void Uplink::hear_answer(std::int64_t number, const Message& answer, Instant now
   }
   ++refused_;
   refusal_ = verdict.why;
-  // Without a leader nobody takes anything: that is a hub that does not answer.
+  // A stream without a leader counts as a hub that does not answer.
   if (verdict.code != Verdict::kUnavailable)
     (void)window_.refused(number, now.steady_us, kRefused_us);
 }
@@ -125,8 +126,8 @@ void Uplink::note_acknowledged(const Outgoing& done, bool duplicate) {
   if (done.event || done.summary) unstored_keys_.insert(done.message.header(header::kKey));
 }
 
-/// A hub that lost its power has lost what it acknowledged last: a server gives data to the disk
-/// every two minutes. What counts is when the connection was lost, not how long ago that is.
+/// Forgets the newest acknowledgements after a new connection: a hub that lost power has lost them,
+/// because a server writes to the disk every two minutes.
 void Uplink::begin_connection() {
   if (!store_.forget_newest(kAgainAfterLoss_us)) return;
   rewind_ = false;
@@ -182,20 +183,21 @@ void Uplink::say_inventory(Instant now) {
   const auto& periods_s = settings_.history.summary_s;
   const std::string text = inventory(outbox_.history(), *outbox_.newest_us(),
                                      periods_s.at(periods_s.size() > 1 ? 1 : 0));
-  if (!text.empty()) newest_.text("inventory", "json", text);
+  if (!text.empty()) newest_.set_text("inventory", "json", text);
 }
 
-/// The file that runs, not one that was changed since.
+/// Sends the configuration file if it is the one that the daemon runs with.
 void Uplink::say_config() {
   const std::string& runs = newest_.config_sha256();
   if (!settings_.fleet.send_config || runs.empty() || runs == config_sent_) return;
   config_sent_ = runs;
   std::string error;
   const auto text = daemon::read_text_file(settings_.config, error);
-  if (text && daemon::sha256(*text) == runs) newest_.text("config", "toml", *text);
+  if (text && daemon::sha256(*text) == runs) newest_.set_text("config", "toml", *text);
 }
 
-/// Events, heartbeat and the like, newest summaries, older ones, raw samples.
+/// Fills the window in the order: events, newest messages, newest summaries, older ones, raw
+/// samples.
 void Uplink::fill(Instant now) {
   const auto takes = [&] { return window_.takes(now.steady_us) && !waits_for_store(); };
   while (!live_.empty() && takes()) {
@@ -231,7 +233,7 @@ bool Uplink::add_event(const event_t& event, Instant now) {
   return add(std::move(out), now);
 }
 
-/// One period; false when none may go now.
+/// Adds one period. Returns false if none may be sent now.
 bool Uplink::fill_periods(Instant now) {
   if (next_period_ >= waiting_.periods.size() ||
       window_.summaries() >= SendWindow::kMaxMessages / 2)
@@ -249,7 +251,7 @@ bool Uplink::fill_periods(Instant now) {
   const std::string& building = settings_.fleet.building;
   const std::string key = message_key(building, period.key);
   if (window_.has(key) || unstored_keys_.contains(key)) return true;
-  const auto summary = summary_message(outbox_.history(), period.key, newest_.table());
+  const auto summary = summary_message(outbox_.history(), period.key, latest_.parameters);
   if (!summary) return true;
   Outgoing out;
   out.summary = period.key;

@@ -15,6 +15,7 @@
 
 #include "daemon/config/keys/fleet_options.h"
 #include "daemon/config/keys/history_options.h"
+#include "daemon/monitor/service/latest_messages.h"
 #include "fleet/link/link.h"
 #include "fleet/uplink/command_desk.h"
 #include "fleet/uplink/newest_messages.h"
@@ -25,7 +26,7 @@
 
 namespace framewatch::fleet {
 
-/// Now, by a clock that is never set and by the host's.
+/// A moment on the monotonic clock and on the host clock.
 struct Instant {
   std::int64_t steady_us = 0, host_us = 0;
 };
@@ -34,29 +35,30 @@ struct UplinkSettings {
   daemon::FleetSettings fleet;
   daemon::HistorySettings history;
   std::string config;  ///< path of the configuration file
-  std::string secret;  ///< that seals keys (message/key.h); empty: they go as they are
+  std::string secret;  ///< seals keys (sealed_key()); empty: sends keys unsealed
 };
 
-/// Sends what the history holds to the hub until the hub has acknowledged it, and what is heard on
-/// LCM at once; obeys commands. All of it in one thread, by step(). docs/fleet.md has the rules.
+/// Sends the content of the history to the hub until the hub acknowledges it, sends LCM messages at
+/// once, and executes commands of the hub. All work happens in step(), in one thread. docs/fleet.md
+/// has the rules.
 class Uplink {
  public:
-  static constexpr std::size_t kMaxLive = 1024;  ///< events of LCM that wait
-  /// Acknowledgements that a hub may lose with its power.
+  static constexpr std::size_t kMaxLive = 1024;  ///< events from LCM that wait
+  /// Age of the acknowledgements that a hub may lose in a power failure.
   static constexpr std::int64_t kAgainAfterLoss_us = 600'000'000;
-  static constexpr double kOlder_hz = 4;  ///< summaries of earlier hours
+  static constexpr double kOlder_hz = 4;  ///< rate of summaries of earlier hours
 
   /// `link` must outlive this.
   Uplink(UplinkSettings settings, Link& link, CommandDesk::Acknowledge acknowledge,
          std::unique_ptr<RawExporter> exporter, Instant now);
 
-  /// LCM channels without the prefix.
+  /// Returns the LCM channels that heard() takes, without the prefix.
   static std::vector<std::string> channels();
-  /// A message of LCM.
+  /// Takes an LCM message. channel: without the prefix. Ignores other channels and malformed bytes.
   void heard(std::string_view channel, std::span<const std::uint8_t> bytes);
-  /// Does what is to be done now; to be called when something has come, and several times a second.
+  /// Does all work that is due. Call it after each message and several times a second.
   void step(Instant now);
-  /// Stores what the hub has acknowledged; before the end.
+  /// Stores the last acknowledgements. Call it at the end.
   void finish(Instant now);
   uplink_status_t status(Instant now) const;
 
@@ -71,6 +73,7 @@ class Uplink {
   void say_inventory(Instant now);
   void say_config();
   void fill(Instant now);
+  void hear_event(const event_t& event);
   bool add_event(const event_t& event, Instant now);
   bool fill_periods(Instant now);
   bool add(Outgoing outgoing, Instant now);
@@ -86,18 +89,19 @@ class Uplink {
   Link& link_;
   SentStore store_;
   Outbox outbox_;
+  daemon::LatestMessages latest_{""};
   NewestMessages newest_;
   SendWindow window_;
   CommandDesk desk_;
   RawSender raw_;
   const Instant begun_;
-  std::int64_t clock_us_;  ///< of acknowledgements when this began; never before an earlier one
+  std::int64_t clock_us_;  ///< clock of acknowledgements at the start; never goes back
 
-  std::deque<event_t> live_;  ///< events heard and not yet under way
-  Waiting waiting_;           ///< what the newest look() found
+  std::deque<event_t> live_;  ///< events from LCM that are not yet under way
+  Waiting waiting_;           ///< result of the newest look()
   std::size_t next_event_ = 0, next_period_ = 0;
   bool look_again_ = true, rewind_ = false;
-  std::string again_;  ///< newest order to resend: keys are sealed anew, or all were repetitions
+  std::string again_;  ///< newest resend command; seals keys anew, else all would be duplicates
   std::int64_t look_us_ = INT64_MIN, store_us_ = INT64_MIN, older_us_ = INT64_MIN,
                inventory_us_ = INT64_MIN;
 

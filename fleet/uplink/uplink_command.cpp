@@ -39,7 +39,7 @@ using daemon::Config;
 constexpr int kPoll_ms = 200;
 constexpr int kWithoutLcm = 1;
 
-/// systemd's copy, where the service is given one (LoadCredential=).
+/// Returns the path of systemd's copy of a file (LoadCredential=) if it exists, else `path`.
 std::string credential(const std::string& path) {
   const char* directory = std::getenv("CREDENTIALS_DIRECTORY");
   if (directory == nullptr) return path;
@@ -48,18 +48,18 @@ std::string credential(const std::string& path) {
   return std::filesystem::exists(copy, none) ? copy.string() : path;
 }
 
-/// What this building alone knows.
+/// Returns a secret that only this building knows.
 std::string a_secret(const daemon::FleetSettings& fleet) {
   return daemon::sha256_of_file(credential(fleet.key));
 }
 
-/// As `framewatch acknowledge` asks the daemon.
+/// Sends the request to the daemon, as `framewatch acknowledge` does.
 std::string acknowledge(const Config& config, const acknowledge_t& request) {
   const daemon::CommandAnswer answer =
       daemon::give_command(config, "run", {"ACKNOWLEDGE", drivers::encoded(request)});
   if (!answer.problem.empty()) return answer.problem;
   const auto done = drivers::decoded<acknowledged_t>(answer.bytes);
-  return done ? done->refused : "the daemon's answer is not understood: another version?";
+  return done ? done->refused : "the daemon's answer is malformed: it may have another version";
 }
 
 Instant now() {
@@ -68,10 +68,11 @@ Instant now() {
 
 std::string state_text(const uplink_status_t& s) {
   if (s.connected == 0) return "no connection: " + s.link_trouble;
-  return fmt::format("{} events and {} summaries wait", s.events_waiting, s.summaries_waiting);
+  return fmt::format("{} events and {} summaries are waiting", s.events_waiting,
+                     s.summaries_waiting);
 }
 
-/// One line when a connection comes, and when it goes.
+/// Logs one line when the connection is made and when it is lost.
 class ConnectionLog {
  public:
   void look(const uplink_status_t& s, bool quiet) {
@@ -80,7 +81,7 @@ class ConnectionLog {
     if (connected && !quiet) daemon::log(daemon::LogLevel::info, "the hub is connected");
     if (!connected)
       daemon::log(daemon::LogLevel::warning,
-                  "no hub: " + s.link_trouble + "; what waits is in the history");
+                  "no hub: " + s.link_trouble + "; unsent data stays in the history");
     connected_ = connected;
     said_ = true;
   }

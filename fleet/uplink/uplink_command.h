@@ -6,12 +6,12 @@ namespace framewatch::fleet {
 
 struct UplinkArguments {
   std::string config;
-  std::string url;  ///< of LCM; empty: as configured
+  std::string url;  ///< LCM provider; empty: as configured
   bool quiet = false;
 };
 
-/// `framewatch uplink`: sends what the history holds to the hub, until a signal ends it. Returns
-/// the exit status.
+/// Runs `framewatch uplink`: sends the history to the hub until SIGINT or SIGTERM. Returns the exit
+/// status.
 int uplink_command(const UplinkArguments& arguments);
 
 }  // namespace framewatch::fleet

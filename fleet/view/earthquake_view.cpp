@@ -13,7 +13,6 @@
 
 #include "daemon/base/clocks.h"
 #include "fleet/view/comparison.h"
-#include "fleet/view/period_reader.h"
 #include "fleet/view/rows.h"
 
 namespace framewatch::fleet {
@@ -35,13 +34,13 @@ constexpr const char* kShaken =
     " AND time_us > (extract(epoch FROM now()) * 1000000)::bigint - $1::bigint"
     " ORDER BY time_us DESC LIMIT {}";
 
-/// The newest state of every change that began between two times.
+// Selects the newest state of every change that began between two times.
 constexpr const char* kRecords =
     "SELECT DISTINCT ON (building, id) building, place, state, value, std_error FROM event"
     " WHERE kind = 'stiffness_change' AND since_us BETWEEN $1 AND $2"
     " ORDER BY building, id, time_us DESC";
 
-/// A building of the list with what it is sorted by.
+/// A building of the list with its sort keys.
 struct Judgement {
   const ComparedBuilding* building = nullptr;
   const Comparison* worst = nullptr;  ///< the largest significant loss, else the largest loss
@@ -60,7 +59,7 @@ bool is_loss(const Comparison& c, double limit) {
   return c.compared && (c.told ? c.ratio < 0 : c.times_error() < -limit);
 }
 
-/// A change that the building has a record of has the record's size here, too.
+/// Replaces the size of a change that the building recorded with the recorded size.
 bool take_records(Database& database, std::int64_t from_us, std::int64_t to_us,
                   std::map<std::int64_t, ComparedBuilding>& buildings) {
   const auto rows = database.query(kRecords, {std::to_string(from_us), std::to_string(to_us)});

@@ -11,22 +11,29 @@
 #include <framewatch/acknowledged_t.hpp>
 #include <framewatch/service_t.hpp>
 
+#include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
 #include "fleet/view/rows.h"
 
 namespace framewatch::fleet {
 namespace {
 
+Urgency urgency_of(const BuildingState& state, const event_t& event) {
+  if (event.severity <= daemon::severity::information) return Urgency::changed;
+  if (state.is_known(event)) return Urgency::known;
+  return event.severity >= daemon::severity::alarm ? Urgency::alarm : Urgency::warning;
+}
+
 using nlohmann::json;
 
-constexpr int kMaxNewEvents = 1000;  // of a building after its heartbeat
+constexpr int kMaxNewEvents = 1000;  // of each building after its heartbeat
 
 constexpr const char* kHeartbeats =
     "SELECT b.id, b.name, b.title, b.place, b.latitude, b.longitude, {}, {}, n.content, {}"
     " FROM building b LEFT JOIN newest n ON n.building = b.id AND n.kind = 'service'"
     " WHERE CASE WHEN $1 = '' THEN NOT b.retired ELSE b.name = $1 END ORDER BY b.name";
-// Those that came with the heartbeat too: which of them was first is not known, and an event that
-// the heartbeat has already changes nothing.
+// Includes events that came at the same time as the heartbeat, because their order is unknown. An
+// event that the heartbeat already has changes nothing.
 constexpr const char* kNewEvents =
     "SELECT b.id, e.id, e.state, e.severity, e.kind, e.place, e.since_us, e.time_us, e.message"
     " FROM building b LEFT JOIN newest n ON n.building = b.id AND n.kind = 'service'"
@@ -74,7 +81,7 @@ event_t event_of(const Database::Row& row) {
 
 using Index = std::map<std::int64_t, std::size_t>;  ///< places in the overview by building
 
-/// What a person here had acknowledged.
+/// Notes events that a person acknowledged on this page.
 void note_orders(Overview& overview, const Index& index, const Rows& orders) {
   for (const Database::Row& row : orders) {
     const json content = json::parse(text_at(row, 1), nullptr, false);
@@ -86,7 +93,7 @@ void note_orders(Overview& overview, const Index& index, const Rows& orders) {
   }
 }
 
-/// What somebody had acknowledged, there or here, as the buildings say.
+/// Notes events that the buildings report as acknowledged.
 void note_acknowledged(Overview& overview, const Index& index, const Rows& said) {
   for (const Database::Row& row : said) {
     const auto at = index.find(integer_at(row, 0));
@@ -98,6 +105,53 @@ void note_acknowledged(Overview& overview, const Index& index, const Rows& said)
 }
 
 }  // namespace
+
+const char* urgency_word(Urgency urgency) {
+  switch (urgency) {
+    case Urgency::alarm:
+      return "alarm";
+    case Urgency::warning:
+      return "warning";
+    case Urgency::silent:
+      return "silent";
+    case Urgency::changed:
+      return "changed";
+    case Urgency::known:
+      return "known";
+    case Urgency::well:
+      break;
+  }
+  return "well";
+}
+
+bool BuildingState::is_silent(std::int64_t now_us) const {
+  return now_us - heard_us.value_or(first_us) > kSilent_us;
+}
+
+Judged judged(const BuildingState& state, std::int64_t now_us) {
+  Judged out;
+  const auto look = [&](Urgency urgency, std::int64_t since_us, const std::string& message) {
+    if (urgency < out.urgency) out = {urgency, since_us, message};
+  };
+  for (const event_t& event : state.raised)
+    look(urgency_of(state, event), event.since_us, event.message);
+  if (state.is_silent(now_us))
+    look(Urgency::silent, state.heard_us.value_or(state.first_us),
+         state.heard_us ? "no heartbeat for over 3 minutes" : "no heartbeat has come yet");
+  return out;
+}
+
+void note_event(std::vector<event_t>& raised, const event_t& event) {
+  const auto same = [&](const event_t& other) { return other.id == event.id; };
+  const auto found = std::find_if(raised.begin(), raised.end(), same);
+  if (event.state == daemon::event_state::cleared) {
+    if (found != raised.end()) raised.erase(found);
+  } else if (found != raised.end()) {
+    *found = event;
+  } else {
+    raised.push_back(event);
+  }
+}
 
 Overview read_overview(Database& database, const std::string& only) {
   Overview out;

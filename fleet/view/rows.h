@@ -13,14 +13,14 @@ namespace framewatch::fleet {
 
 using Rows = std::vector<Database::Row>;
 
-/// Columns of an answer; NULL or no number: 0, or empty.
+/// Return the value of a column; 0, an empty text or nullopt for NULL and malformed numbers.
 std::string text_at(const Database::Row& row, std::size_t column);
 std::int64_t integer_at(const Database::Row& row, std::size_t column);
 std::optional<double> number_at(const Database::Row& row, std::size_t column);
-/// Of a bytea.
+/// Returns the bytes of a bytea in text form.
 Bytes bytes_at(const Database::Row& row, std::size_t column);
 
-/// An expression of a timestamptz as microseconds since 1970, or of the time now.
+/// Returns SQL that converts the timestamptz expression `time` to microseconds since 1970.
 std::string sql_us(const std::string& time);
 
 }  // namespace framewatch::fleet

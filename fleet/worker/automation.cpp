@@ -24,7 +24,7 @@ Message message(const std::string& building, const char* what, const std::string
   return {fmt::format("framewatch.{}.{}", building, what), "", {}, {text.begin(), text.end()}};
 }
 
-/// The most severe first; of more than kMaxRaised the others are counted alone.
+/// Lists kMaxRaised events, most severe first, and counts the others.
 std::string state_json(const std::string& building, const service_t& s) {
   std::vector<std::size_t> order(s.event_id.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;

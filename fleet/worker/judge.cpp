@@ -10,8 +10,7 @@
 #include "daemon/base/clocks.h"
 #include "drivers/files/number_text.h"
 #include "drivers/lcm/message_check.h"
-#include "fleet/message/key.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -21,7 +20,7 @@ constexpr std::int64_t kMaxPieces = 100'000;
 constexpr std::size_t kLongestWhy = 1000;
 constexpr std::size_t kDigestDigits = 64;
 
-/// Kinds of which the hub keeps the newest, with their types.
+/// Kinds of which the hub keeps only the newest message, with their types.
 struct NewestKind {
   const char *kind, *type;
 };
@@ -46,7 +45,7 @@ bool is_request_name(std::string_view text) {
   });
 }
 
-/// One message on its way into the batch.
+/// Checks one message.
 class Judgement {
  public:
   Judgement(const Message& message, std::int64_t hub_us, FleetBatch& batch)
@@ -54,12 +53,12 @@ class Judgement {
 
   void run() {
     const auto parts = up_parts(message_.subject);
-    if (!parts) return refuse("its subject is not one of a building");
+    if (!parts) return refuse("its subject is not fw.up.BUILDING.KIND");
     building_ = parts->building;
     kind_ = parts->kind;
     key_ = key_of_sealed(message_.header(header::kKey));
     const auto key = key_parts(key_);
-    if (!key) return refuse("it has no key");
+    if (!key) return refuse("its key (Nats-Msg-Id) is missing");
     if (key->building != building_)
       return refuse(fmt::format("its key names {}, its subject {}", key->building, building_));
     type_ = message_.header(header::kType);
@@ -83,17 +82,17 @@ class Judgement {
   void refuse(std::string reason) { other(std::move(reason)); }
   void unknown() { other(""); }
 
-  /// The content as a type of ours; else it goes where it belongs.
+  /// Decodes the content. Returns nullopt after adding the message to `others` if it fails.
   template <typename Type>
   std::optional<Type> taken(const char* type) {
     if (type_ != type) {
-      refuse(fmt::format("{} is no {} but {}", kind_, type, type_));
+      refuse(fmt::format("{} must be {}, not {}", kind_, type, type_));
       return std::nullopt;
     }
     auto message = drivers::decoded<Type>(content_);
     if (message) return message;
     const auto print = drivers::fingerprint(content_);
-    // A newer building does not stop the fleet.
+    // A newer program in a building must not stop the others.
     if (print && drivers::known_type(*print) == nullptr)
       unknown();
     else
@@ -102,7 +101,7 @@ class Judgement {
   }
   bool is_key(const std::string& wanted) {
     if (key_ == wanted) return true;
-    refuse("its key is not that of its content, " + wanted);
+    refuse("its key does not match its content, " + wanted);
     return false;
   }
 
@@ -120,7 +119,7 @@ class Judgement {
     if (s->start_us < 0 || s->start_us > hub_us_ + daemon::kDay_us)
       return refuse(fmt::format("it begins at {} us, before 1970 or after tomorrow", s->start_us));
     if (!s->config_sha256.empty() && !is_digest(s->config_sha256))
-      return refuse("its configuration is no SHA-256");
+      return refuse("its configuration digest is not a SHA-256");
     batch_.summaries.push_back({building_, std::move(*s)});
   }
 
@@ -128,10 +127,11 @@ class Judgement {
     if (kind_ == "parameters") {
       auto table = taken<parameter_table_t>(type);
       if (!table) return;
-      if (!is_digest(table->config_sha256)) return refuse("its configuration is no SHA-256");
+      if (!is_digest(table->config_sha256))
+        return refuse("its configuration digest is not a SHA-256");
       batch_.parameters.push_back({building_, std::move(*table)});
     } else if (type_ != type) {
-      return refuse(fmt::format("{} is no {} but {}", kind_, type, type_));
+      return refuse(fmt::format("{} must be {}, not {}", kind_, type, type_));
     }
     batch_.newest.push_back({building_, kind_, type_, std::move(content_)});
   }
@@ -140,13 +140,13 @@ class Judgement {
     const auto piece = drivers::parse_integer(message_.header(header::kPiece));
     const auto pieces = drivers::parse_integer(message_.header(header::kPieces));
     const std::string request = kind_.substr(4);
-    if (!is_request_name(request)) return refuse("its request has no name of a-z, 0-9 and -");
+    if (!is_request_name(request)) return refuse("its request must be a name of a-z, 0-9 and -");
     const bool says_why_none = piece == 0 && pieces == 0;
     if (!piece || !pieces || *piece < 0 || *pieces > kMaxPieces ||
         (*piece >= *pieces && !says_why_none))
-      return refuse("its number is none of a piece");
+      return refuse("its piece number is not valid");
     if (says_why_none && content_.size() > kLongestWhy)
-      return refuse("it says at length that there is nothing");
+      return refuse("its reason for sending nothing is too long");
     if (!is_key(raw_key(building_, request, *piece))) return;
     batch_.pieces.push_back({building_, request, message_.header(header::kFile),
                              static_cast<std::int32_t>(*piece), static_cast<std::int32_t>(*pieces),

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 #include "fleet/worker/automation.h"
 #include "fleet/worker/judge.h"
 
@@ -17,9 +17,38 @@ namespace {
 constexpr const char* kNext = "$JS.API.CONSUMER.MSG.NEXT.";
 constexpr std::size_t kAskedAtOnce = 250;
 constexpr std::int64_t kCommandHolds_s = 60;
-constexpr std::int64_t kGrace_us = 1'000'000;  // after the hub's own end of a request
+constexpr std::int64_t kGrace_us = 1'000'000;  // after the hub should have ended a request
 
 }  // namespace
+
+bool FloodGate::takes(const std::string& building, std::size_t bytes, std::int64_t hub_us) {
+  const std::int64_t hour_us = hub_us - hub_us % (3600 * daemon::kSecond_us);
+  if (hour_us != hour_us_) {
+    floods_ = take_floods();
+    said_.clear();
+    hour_us_ = hour_us;
+  }
+  Said& said = said_[building];
+  const auto size = static_cast<std::int64_t>(bytes);
+  if (said.messages < most_messages_ && said.bytes + size <= most_bytes_) {
+    ++said.messages;
+    said.bytes += size;
+    return true;
+  }
+  ++said.flood_messages;
+  said.flood_bytes += size;
+  return false;
+}
+
+std::vector<ReceivedFlood> FloodGate::take_floods() {
+  std::vector<ReceivedFlood> out = std::exchange(floods_, {});
+  for (auto& [building, said] : said_) {
+    if (said.flood_messages == 0) continue;
+    out.push_back({building, hour_us_, std::exchange(said.flood_messages, 0),
+                   std::exchange(said.flood_bytes, 0)});
+  }
+  return out;
+}
 
 Worker::Worker(Link& link, StoreSink store, MissingDays missing, FloodGate gate)
     : link_(link),
@@ -36,7 +65,7 @@ Worker::Worker(Link& link, StoreSink store, MissingDays missing, FloodGate gate)
 
 void Worker::step(const WorkerTime& now) {
   if (std::exchange(connections_, link_.connections()) != link_.connections())
-    for (Consumer& consumer : consumers_) consumer.asked_us = 0;  // requests went with the line
+    for (Consumer& consumer : consumers_) consumer.asked_us = 0;  // requests are lost
   for (Message& message : link_.take()) take(std::move(message), now);
   const bool due = !waiting_.empty() &&
                    (waiting_.size() >= kMaxMessages || now.steady_us - since_us_ >= kLongest_us);
@@ -59,8 +88,8 @@ void Worker::ask(Consumer& consumer, std::int64_t steady_us) {
   consumer.lacking = kAskedAtOnce;
 }
 
-/// A message of the hub itself ends a request: 404 nothing there, 408 its time is over, 409 the
-/// consumer or the leader changed, 503 nobody is there. What the last three say holds for a while.
+/// Handles a status message of the hub, which ends a request: 404 no messages, 408 timeout, 409 the
+/// consumer or the leader changed, 503 no receiver. Waits a while after the last three.
 void Worker::take(Message message, const WorkerTime& now) {
   if (!message.header(header::kStatus).empty()) {
     for (Consumer& consumer : consumers_)
@@ -68,7 +97,7 @@ void Worker::take(Message message, const WorkerTime& now) {
         consumer.lacking = message.header(header::kStatus) == "408" ? 0 : consumer.lacking;
     return;
   }
-  if (message.reply.empty()) return;  // nothing that could be acknowledged
+  if (message.reply.empty()) return;  // cannot be acknowledged
   for (Consumer& consumer : consumers_)
     if (message.reply.find(fmt::format(".{}.", consumer.stream)) != std::string::npos &&
         consumer.lacking > 0)
@@ -77,7 +106,7 @@ void Worker::take(Message message, const WorkerTime& now) {
   waiting_.push_back(std::move(message));
 }
 
-/// What floods goes behind the others; how many are before it.
+/// Moves messages over the limit to the end. Returns the number of messages before them.
 std::size_t Worker::put_floods_last(const WorkerTime& now) {
   const auto within = [&](const Message& message) {
     const auto parts = up_parts(message.subject);
@@ -93,16 +122,15 @@ void Worker::count(const FleetBatch& batch, std::size_t messages) {
     ++(other.reason.empty() ? counters_.unknown : counters_.refused);
   for (const ReceivedFlood& flood : batch.floods) counters_.flooding += flood.messages;
   ++counters_.batches;
-  // What is stored is told to building automation, which acknowledges nothing: the next heartbeat
-  // says it again.
+  // Building automation does not acknowledge; the next heartbeat repeats the state.
   for (const Message& message : automation_messages(batch)) (void)link_.publish(message);
 }
 
 void Worker::acknowledge(const Message& message) {
-  (void)link_.publish({message.reply, "", {}, {}});  // if it is lost, the message comes again
+  (void)link_.publish({message.reply, "", {}, {}});  // if this is lost, the message comes again
 }
 
-/// To be given again, to any worker, when the pause is over: not only when the hub grows impatient.
+/// Asks the hub to deliver the message again, to any worker, after the pause.
 void Worker::give_back(const Message& message) {
   const std::string text = fmt::format("-NAK {{\"delay\":{}}}", pause_us_ * 1000);
   (void)link_.publish({message.reply, "", {}, Bytes(text.begin(), text.end())});
@@ -124,7 +152,7 @@ void Worker::store(const WorkerTime& now) {
   } else if (outcome.lasting) {
     store_one_by_one(within, std::move(batch.floods), now);
   } else {
-    // Nothing is acknowledged: the hub keeps it, and gives it again. So nothing of it was said yet.
+    // Nothing is acknowledged or published, because the hub delivers all of it again.
     gate_ = std::move(before);
     pause_us_ = std::clamp(2 * pause_us_, kShortestPause_us, kLongestPause_us);
     pause_until_us_ = now.steady_us + pause_us_;
@@ -133,7 +161,7 @@ void Worker::store(const WorkerTime& now) {
   waiting_.clear();
 }
 
-/// One message that the database cannot take does not stop the others.
+/// Stores messages singly, so that one that the database rejects does not stop the others.
 void Worker::store_one_by_one(std::size_t within, std::vector<ReceivedFlood> floods,
                               const WorkerTime& now) {
   for (std::size_t i = 0; i < within; ++i) {
@@ -144,7 +172,7 @@ void Worker::store_one_by_one(std::size_t within, std::vector<ReceivedFlood> flo
     if (outcome.lasting) {
       batch = {};
       batch.others.push_back({message.subject, message.header(header::kKey),
-                              "the database does not take it: " + outcome.problem,
+                              "the database rejects it: " + outcome.problem,
                               message.header(header::kType), message.header(header::kVersion),
                               message.bytes});
       outcome = store_(batch);
@@ -169,7 +197,7 @@ void Worker::note_inventories(const FleetBatch& batch, std::int64_t steady_us) {
       to_compare_.insert({newest.building, steady_us + kBeforeCompared_us});
 }
 
-/// One at a time, between batches. What is not known now is asked of the inventory of tomorrow.
+/// Compares one inventory between batches. If the database fails, waits for tomorrow's inventory.
 void Worker::compare_inventories(const WorkerTime& now) {
   const auto due = std::find_if(to_compare_.begin(), to_compare_.end(),
                                 [&](const auto& one) { return one.second <= now.steady_us; });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -9,54 +10,81 @@
 
 #include "fleet/link/link.h"
 #include "fleet/store/fleet_store.h"
-#include "fleet/worker/flood_gate.h"
 
 namespace framewatch::fleet {
 
-/// Where batches go. `lasting`: the reason lies in the content, so that it would fail again.
+/// Limits the messages of a building in an hour to more than an uplink sends while it catches up (4
+/// older summaries a second) or sends raw samples (2000 kbit/s). Messages beyond the limit are
+/// counted, not stored.
+class FloodGate {
+ public:
+  static constexpr std::int64_t kMessages = 20'000, kBytes = 1'000'000'000;
+
+  explicit FloodGate(std::int64_t most_messages = kMessages, std::int64_t most_bytes = kBytes)
+      : most_messages_(most_messages), most_bytes_(most_bytes) {}
+
+  /// Counts a message of `bytes` in the hour of `hub_us` (UTC). Returns false if it is over the
+  /// limit.
+  bool takes(const std::string& building, std::size_t bytes, std::int64_t hub_us);
+  /// Returns the messages over the limit since the last call.
+  std::vector<ReceivedFlood> take_floods();
+
+ private:
+  struct Said {
+    std::int64_t messages = 0, bytes = 0;  ///< in this hour
+    std::int64_t flood_messages = 0, flood_bytes = 0;
+  };
+  std::int64_t most_messages_, most_bytes_;
+  std::int64_t hour_us_ = 0;
+  std::map<std::string, Said> said_;
+  std::vector<ReceivedFlood> floods_;  ///< of past hours
+};
+
+/// The result of storing a batch. lasting: the content is the cause, so that a retry would fail.
 struct StoreOutcome {
-  std::string problem;  ///< empty: stored
+  std::string problem;  ///< empty if stored
   bool lasting = false;
 };
 using StoreSink = std::function<StoreOutcome(const FleetBatch&)>;
 
-/// Begins of the days (us, UTC) of which the database has less than a building says it has, the
-/// newest first. Empty: it is not known now.
+/// Returns the starts of days (us, UTC) of which the database has less than the building, newest
+/// first. Returns nullopt if that is unknown now.
 using MissingDays =
     std::function<std::optional<std::vector<std::int64_t>>(const std::string& building)>;
 
 /// The two clocks of a worker.
 struct WorkerTime {
-  std::int64_t steady_us = 0;  ///< never set
+  std::int64_t steady_us = 0;  ///< monotonic
   std::int64_t hub_us = 0;     ///< UTC
 };
 
-/// Takes what buildings said from the hub's consumers, stores it, and acknowledges what is stored:
-/// a message is lost in no case, and what comes twice changes nothing. Any number of workers share
-/// the consumers.
+/// Takes messages of buildings from the hub's consumers, stores them and acknowledges what is
+/// stored. No message is lost, and a repeated message changes nothing. Any number of workers may
+/// share the consumers.
 class Worker {
  public:
-  static constexpr std::size_t kMaxMessages = 500;      ///< of a batch
-  static constexpr std::int64_t kLongest_us = 500'000;  ///< that one is collected
-  static constexpr std::int64_t kPull_us = 5'000'000;   ///< that the hub holds a request
-  /// After an inventory came, until it is compared: what is under way has then arrived.
+  static constexpr std::size_t kMaxMessages = 500;      ///< in a batch
+  static constexpr std::int64_t kLongest_us = 500'000;  ///< time to collect a batch
+  static constexpr std::int64_t kPull_us = 5'000'000;   ///< time that the hub holds a request
+  /// Time between an inventory and its comparison, so that messages under way arrive first.
   static constexpr std::int64_t kBeforeCompared_us = 1'800'000'000;
-  static constexpr std::size_t kMaxResent_days = 5, kMaxCompared = 20'000;  ///< of one; waiting
+  /// Days of one building that are requested again; inventories that wait.
+  static constexpr std::size_t kMaxResent_days = 5, kMaxCompared = 20'000;
   static constexpr std::int64_t kShortestPause_us = 1'000'000, kLongestPause_us = 30'000'000;
 
   struct Counters {
     std::int64_t stored = 0;                              ///< messages
-    std::int64_t refused = 0, unknown = 0, flooding = 0;  ///< among them
+    std::int64_t refused = 0, unknown = 0, flooding = 0;  ///< included in `stored`
     std::int64_t batches = 0;
-    std::int64_t resends = 0;  ///< days that buildings were asked for again
+    std::int64_t resends = 0;  ///< days that were requested again
     std::string trouble;       ///< why the newest batch was not stored
   };
 
   Worker(Link& link, StoreSink store, MissingDays missing = {}, FloodGate gate = FloodGate());
 
-  /// Does what is due. Waits for nothing but the store.
+  /// Does what is due. Waits only for the store.
   void step(const WorkerTime& now);
-  /// Stores and acknowledges what is collected.
+  /// Stores and acknowledges the collected messages. Call it at the end.
   void finish(const WorkerTime& now);
   const Counters& counters() const { return counters_; }
 
@@ -64,8 +92,8 @@ class Worker {
   struct Consumer {
     const char *stream, *name;
     std::string inbox = {};
-    std::int64_t asked_us = 0;  ///< 0: not asked
-    std::size_t lacking = 0;    ///< messages of the request that have not come
+    std::int64_t asked_us = 0;  ///< 0: no request
+    std::size_t lacking = 0;    ///< missing messages of the request
   };
 
   void ask(Consumer& consumer, std::int64_t steady_us);
@@ -85,10 +113,10 @@ class Worker {
   StoreSink store_;
   MissingDays missing_;
   FloodGate gate_;
-  std::map<std::string, std::int64_t> to_compare_;  ///< buildings, and when (steady clock)
+  std::map<std::string, std::int64_t> to_compare_;  ///< due time (steady clock) by building
   std::vector<Consumer> consumers_;
   std::vector<Message> waiting_;
-  std::int64_t since_us_ = 0;  ///< when the oldest of them came
+  std::int64_t since_us_ = 0;  ///< arrival of the oldest in waiting_
   std::int64_t connections_ = 0;
   std::int64_t pause_us_ = 0, pause_until_us_ = 0;
   Counters counters_;

@@ -94,7 +94,7 @@ async function damaged(page) {
   const size = (await answer(page, 0)).match(/has lost ([\d.]+ %)/)[1];
   const texts = await Promise.all(['#findings', '#alarms', '#chosen'].map(id => page.textContent(id)));
   expect(texts.every(t => t.includes(size)), `damaged: ${size} in answer, findings, events and element: ${texts[2]}`);
-  expect(/structural engineer look at story 1, frame y2/.test(await answer(page, 3)), 'damaged: what to do');
+  expect(/structural engineer inspect story 1, frame y2/.test(await answer(page, 3)), 'damaged: what to do');
   expect((await page.getAttribute('#alert', 'role')) === 'alert' && /has lost/.test(await page.textContent('#alert')), 'damaged: a screen reader says it');
   await shot(page, 'damaged');
   await page.click('#box-mode');
@@ -134,7 +134,7 @@ async function deadChannel(page) {
   await until(page, 'dead channel: the pill is amber', () => /^live, but 1 of 10 sensors not good$/.test(document.getElementById('state').textContent) && document.getElementById('state').className.includes('amber'));
   await until(page, 'dead channel: a red dot on the building', name => building.dots.includes(name), kDead);
   expect(new RegExp(`Only in part\\. ${kDead} is silent: no sample comes from it any more\\. Since .* UTC.*9 of 10 sensors are good`, 's').test(await answer(page, 1)), 'dead channel: the second answer says so');
-  expect(new RegExp(`Look at sensor ${kDead}`).test(await answer(page, 3)), 'dead channel: what to do');
+  expect(new RegExp(`Check the power, cable and mounting of sensor ${kDead}`).test(await answer(page, 3)), 'dead channel: what to do');
   expect((await page.textContent('#findings')).includes(kDead), 'dead channel: in the open findings');
   await shot(page, 'dead-channel');
 }
@@ -145,7 +145,7 @@ async function openedLate(browser, address) {
   await until(page, 'opened late: says how long nothing came', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
   await until(page, 'opened late: the answers are there', () => framewatch.told && framewatch.told.answers.length === 4);
   expect(/Yes\. Story 1, frame y2/.test(await answer(page, 0)), 'opened late: what happened is said');
-  expect(/No: no samples for .*What is shown is old/.test(await answer(page, 1)), 'opened late: that it is old is said');
+  expect(/No: no samples for .*The values shown are old/.test(await answer(page, 1)), 'opened late: that it is old is said');
   expect(/A shake: a story swayed by up to/.test(await answer(page, 2)), 'opened late: what it went through is said');
   expect(await page.evaluate(() => framewatch.opened) > 60, 'opened late: the last minutes are there');
   await until(page, 'opened late: last values with their age', () => /last value .* kN\/m .* old, of .* UTC/.test(document.getElementById('chosen').textContent));

@@ -64,7 +64,7 @@ class BadInput:
         unknown = self.postgres.ask("SELECT count(*), min(type) FROM unknown")
         self.must(unknown == "1|event_t", f"a foreign fingerprint is kept for later, and stops nothing ({unknown})")
         said = self.reasons()
-        for reason in ("its key names c2", "its key is not that of its content", "it has no key"):
+        for reason in ("its key names c2", "its key does not match its content", "its key (Nats-Msg-Id) is missing"):
             self.must(reason in said, f"refused: {reason}")
 
     def clocks(self):

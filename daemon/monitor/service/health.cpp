@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
-#include <span>
 #include <utility>
 
 #include <fmt/core.h>
@@ -167,48 +166,20 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
 }  // namespace
 
 std::vector<std::string> Heard::channels() const {
-  std::vector<std::string> out;
-  for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "WATCH", "CAN", "HISTORY",
-                           "ACTIONS", "ACKNOWLEDGED", "RECEPTION", "UPLINK"})
-    out.push_back(prefix_ + name);
-  return out;
+  return LatestMessages::channels(
+      {DaemonMessage::service, DaemonMessage::status, DaemonMessage::estimate, DaemonMessage::gap,
+       DaemonMessage::watch, DaemonMessage::can, DaemonMessage::history, DaemonMessage::actions,
+       DaemonMessage::acknowledged, DaemonMessage::reception, DaemonMessage::uplink});
 }
 
 void Heard::message(const std::string& channel, const void* data, std::size_t size) {
-  const std::span bytes(static_cast<const std::uint8_t*>(data), size);
-  const std::string name = channel.substr(prefix_.size());
-  if (name == "SERVICE") {
-    if (auto found = drivers::decoded<service_t>(bytes)) {
-      if (service && !first_service) first_service = service;
-      service = std::move(found);
-    }
-  } else if (name == "STATUS") {
-    if (auto found = drivers::decoded<status_t>(bytes)) {
-      if (status && !first_status) first_status = status;
-      status = std::move(found);
-    }
-  } else if (name == "ESTIMATE") {
-    if (auto found = drivers::decoded<window_estimate_t>(bytes)) estimate = std::move(found);
-  } else if (name == "GAP") {
-    if (auto found = drivers::decoded<gap_t>(bytes)) gap = std::move(found);
-  } else if (name == "WATCH") {
-    if (auto found = drivers::decoded<watch_t>(bytes)) watch = std::move(found);
-  } else if (name == "CAN") {
-    if (auto found = drivers::decoded<can_status_t>(bytes)) can = std::move(found);
-  } else if (name == "HISTORY") {
-    if (auto found = drivers::decoded<history_status_t>(bytes)) history = std::move(found);
-  } else if (name == "ACKNOWLEDGED") {
-    if (auto found = drivers::decoded<acknowledged_t>(bytes)) acknowledged = std::move(found);
-  } else if (name == "RECEPTION") {
-    if (auto found = drivers::decoded<reception_t>(bytes)) {
-      if (reception && !first_reception) first_reception = reception;
-      reception = std::move(found);
-    }
-  } else if (name == "UPLINK") {
-    if (auto found = drivers::decoded<uplink_status_t>(bytes)) uplink = std::move(found);
-  } else if (name == "ACTIONS") {
-    if (auto found = drivers::decoded<action_status_t>(bytes)) actions = std::move(found);
-  }
+  auto earlier_service = first_service ? first_service : service;
+  auto earlier_status = first_status ? first_status : status;
+  auto earlier_reception = first_reception ? first_reception : reception;
+  const auto changed = update(channel, {static_cast<const std::uint8_t*>(data), size});
+  if (changed == DaemonMessage::service) first_service = std::move(earlier_service);
+  if (changed == DaemonMessage::status) first_status = std::move(earlier_status);
+  if (changed == DaemonMessage::reception) first_reception = std::move(earlier_reception);
 }
 
 bool Heard::enough() const {

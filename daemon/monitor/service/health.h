@@ -6,48 +6,35 @@
 #include <string>
 #include <vector>
 
-#include <framewatch/acknowledged_t.hpp>
-#include <framewatch/action_status_t.hpp>
-#include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
-#include <framewatch/gap_t.hpp>
-#include <framewatch/history_status_t.hpp>
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
-#include <framewatch/uplink_status_t.hpp>
-#include <framewatch/watch_t.hpp>
-#include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
+#include "daemon/monitor/service/latest_messages.h"
 
 namespace framewatch::daemon {
 
-/// The newest messages of a daemon, collected over a few seconds.
-class Heard {
+/// The latest messages of a daemon that `framewatch status` collects over a few seconds, and the
+/// first report of each kind that counts something.
+class Heard : public LatestMessages {
  public:
-  explicit Heard(const Config& config) : prefix_(config.lcm.prefix) {}
+  explicit Heard(const Config& config) : LatestMessages(config.lcm.prefix) {}
 
+  /// Returns the LCM channels to listen on.
   std::vector<std::string> channels() const;
+  /// Takes one LCM message. Ignores other channels and malformed payloads.
   void message(const std::string& channel, const void* data, std::size_t size);
 
-  /// Whether two reports of the process have come, and two of the samples unless there are none.
+  /// Returns true when two reports of the process have come, and two of the samples unless no
+  /// samples arrive.
   bool enough() const;
 
-  std::optional<service_t> first_service, service;
-  std::optional<status_t> first_status, status;
-  std::optional<window_estimate_t> estimate;
-  std::optional<gap_t> gap;
-  std::optional<watch_t> watch;
-  std::optional<can_status_t> can;
-  std::optional<history_status_t> history;
-  std::optional<action_status_t> actions;
-  std::optional<reception_t> first_reception, reception;
-  std::optional<acknowledged_t> acknowledged;
-  std::optional<uplink_status_t> uplink;
-
- private:
-  std::string prefix_;
+  /// Set when the second report of the kind comes.
+  std::optional<service_t> first_service;
+  std::optional<status_t> first_status;
+  std::optional<reception_t> first_reception;
 };
 
 /// Returns the index of the event in heard.acknowledged; nullopt if it is not acknowledged.

@@ -1,5 +1,5 @@
 'use strict';
-// The four answers at the top and the open findings, as the server gives them: nothing is judged here.
+// Shows the four answers and the open findings as the server sends them, without judging.
 let told = {answers: [], findings: [], drift: []};
 const openFindings = () => told.findings.filter(f => !f.acknowledged);
 const findingOf = name => told.findings.find(f => f.kind === 'change' && f.place === name && f.ratio !== null);
@@ -48,7 +48,7 @@ function showAnswers() {
   const newest = told.answers.flatMap(a => [a.line, ...a.more]).map(line => line.report).find(Boolean) || '';
   if (newest !== showAnswers.report) { showAnswers.report = newest; loadEventReports(); }
 }
-// Reports that the estimator wrote after strong motion, of which the third answer names the newest.
+// Lists the reports after strong motion; the third answer links the newest.
 async function loadEventReports() {
   const answer = await fetch('event-reports.json').catch(() => null);
   const list = answer && answer.ok ? await answer.json() : null, table = $('event-reports');
@@ -72,7 +72,7 @@ function acknowledgeButton(ids, what) {
   b.onclick = async () => { for (const id of ids) await post('acknowledge?id=' + id); };
   return b;
 }
-// Findings of one cause are one line: a switch that loses power takes all its sensors with it.
+// Groups findings of one cause in one line, as when a switch that loses power stops many sensors.
 function grouped(findings) {
   const groups = new Map();
   for (const f of findings) {

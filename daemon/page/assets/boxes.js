@@ -1,6 +1,6 @@
 'use strict';
 // Boxplots of one kind of parameter as in the paper's Figure 10, with references and the newest value:
-// each relative to its own reference, or each in its own unit on a scale of its own.
+// each relative to its reference, or each in its unit on a separate scale.
 class Boxes {
   constructor(canvas, plan, kind, onChoose) {
     this.canvas = canvas;
@@ -28,7 +28,7 @@ class Boxes {
     const b = this.canvas.getBoundingClientRect(), k = Math.floor((e.clientX - b.left - this.left) / this.step);
     return k >= 0 && k < this.index.length ? k : -1;
   }
-  // What is drawn of an element, in units of its axis.
+  // Returns the values to draw for an element, in units of its axis.
   shape(i, percent) {
     const q = this.plan.parameters[i], has = boxes && boxes.count[i] > 0, value = known[i];
     const size = reference(i) || (has ? boxes.median[i] : value ? value.value : null);
@@ -118,7 +118,7 @@ class Boxes {
     g.restore();
   }
 }
-// Every value as text, for whoever wants the numbers or cannot see the picture.
+// Shows every value as text, for exact numbers and for screen readers.
 function fitShort(i) {
   if (!fit || !fit.word[i]) return '';
   return (fit.word[i] < 3 ? `± ${percent(fit.error[i], fit.error[i]).slice(1)}, ` : '') + fitWords[fit.word[i]];

@@ -1,5 +1,5 @@
 'use strict';
-// The building in 3D: frames as walls between floors, panels as floors, moved by what the floors do.
+// The building in 3D: frames as walls between floors, panels as floors, moved by the floors' motion.
 const kMaxExaggeration = 2000;
 class Building {
   constructor(canvas, plan, onChoose) {
@@ -30,12 +30,12 @@ class Building {
     for (const h of plan.story_height_m) this.zs.push(this.zs[this.zs.length - 1] + h);
     this.extent = Math.max(this.xs.at(-1), this.ys.at(-1), this.zs.at(-1));
     const n = plan.frames_x.length, frames = n + plan.frames_y.length;
-    // With channels on some floors the server adds the motion of every frame, the base's first.
+    // If only some floors have channels, the server appends the motion of every frame, the base first.
     this.axisOf = plan.grouped ? (story, frame) => plan.axes.length + story * frames + frame
       : (story, frame) => plan.axes.findIndex(a => a.story === story && a.frame === frame);
     this.baseOf = direction => plan.axes.findIndex(a => a.story === 0 && a.direction === direction);
     const motions = plan.grouped ? plan.axes.length + (plan.stories + 1) * frames : plan.axes.length;
-    // What each motion is measured from: the base of its frame, or of its direction.
+    // The reference of each motion: the base of its frame or of its direction.
     this.from = Array.from({length: motions}, (_, i) => i < plan.axes.length ? this.baseOf(plan.axes[i].direction)
       : this.axisOf(0, (i - plan.axes.length) % frames));
     this.ofBase = i => i < plan.axes.length ? plan.axes[i].story === 0 : i < plan.axes.length + frames;
@@ -62,7 +62,7 @@ class Building {
       this.choose(k);
     });
   }
-  // What the integrators make of a beginning in the midst of motion is not shown.
+  // Hides the transient of the integrators after a start during motion.
   begin() {
     this.motion = this.from.map(() => ({last: null, a: 0, v: 0, d: 0}));
     this.settling = Math.ceil(1.2 * this.plan.rate_hz / this.plan.high_pass_hz);
@@ -83,7 +83,7 @@ class Building {
     });
     return faces;
   }
-  // One instant: displacement relative to the base, integrated twice above high_pass_hz.
+  // Adds one instant: displacement relative to the base, integrated twice above high_pass_hz.
   push(accel) {
     const dt = 1 / this.plan.rate_hz, keep = Math.exp(-2 * Math.PI * this.plan.high_pass_hz * dt);
     if (this.settling > 0) --this.settling;
@@ -125,7 +125,7 @@ class Building {
     this.w = w; this.h = h;
     const across = Math.hypot(this.xs.at(-1), this.ys.at(-1)) * 1.25;
     this.zoom = Math.min(w / across, h / (this.zs.at(-1) * Math.cos(this.tilt) + across * Math.sin(this.tilt)) / 1.02);
-    // What hardly moves is not blown up until its noise looks like an earthquake.
+    // Limits the enlargement, so that noise does not look like an earthquake.
     this.factor = this.still || this.settling ? 0 : Math.min(kMaxExaggeration, this.extent * 0.13 / Math.max(this.largest, 1e-9));
     this.shapes = this.faces.map((f, k) => {
       const points = f.at.map(a => this.at(...a));
@@ -166,7 +166,7 @@ class Building {
     this.drifts(g, style);
     this.compass(g, style);
   }
-  // Floors with channels, where others have none.
+  // Returns the floors with channels if other floors have none.
   levels(g, style) {
     if (!this.plan.grouped) return;
     const x = this.xs.length - 1, y = this.ys.length - 1;
@@ -177,7 +177,7 @@ class Building {
       g.stroke();
     }
   }
-  // Of a channel that rides on no frame.
+  // Position of a channel that is not on a frame.
   planPoint(a) {
     const f = this.floorAxis[a.story], g = this.factor, d = i => a.story > 0 && i !== undefined && i >= 0 ? this.motion[i].d : 0;
     const inside = (v, all) => Math.min(Math.max(v, 0), all.at(-1));
@@ -192,7 +192,7 @@ class Building {
     g.lineWidth = 4; g.lineJoin = 'round'; g.fillStyle = style.ink; g.strokeText(name, x + 11, y + 4); g.fillText(name, x + 11, y + 4); g.lineJoin = 'miter';
     this.dots.push(name);
   }
-  // Peak drift ratios of the newest shake, beside their stories.
+  // Draws the peak drift ratios of the newest shake beside their stories.
   drifts(g, style) {
     if (!told.drift.length) return;
     g.font = '12px system-ui'; g.textAlign = 'right'; g.fillStyle = style.soft;

@@ -1,5 +1,5 @@
 'use strict';
-// The tables of channels and buses: what arrives, what is missing, what is wrong.
+// The tables of channels and buses with their counters.
 let counted = null;
 function onStatus(s) {
   status = s;

@@ -1,14 +1,14 @@
 'use strict';
-// Ties the stream of events to what is drawn. All numbers shown come from the events.
+// Connects the event stream to the drawings. All numbers come from the events.
 const $ = id => document.getElementById(id);
 const reasons = ['', 'first window not complete', 'moves too little', 'floor too stiff', 'plan symmetric', 'sensor lost', 'moves, but too uncertain'];
-const fitWords = ['', 'it fits', 'only changes mean something', 'the model does not fit'];
+const fitWords = ['', 'it fits', 'only changes are reliable', 'the model does not fit'];
 const kSilence_ms = 1500;
 let plan, building, boxPlots = [], strips = {}, boxes, estimate, fit, baseline = [], status, chosen = 0;
 let lastMotion = 0, lastAlive = 0, lastRow = null, frames = [], known = [];
 let boxMode = localStorage.getItem('boxes') || 'percent';
 const alarms = new Map();
-// What the browser test asks for.
+// State that the browser tests read.
 window.framewatch = {rows: 0, lost: 0, leftOut: 0, dropped: 0, latency: [], estimate: null, boxes: null, motion: null, alarms, fps: () => frames.length};
 
 const themes = {};
@@ -34,14 +34,14 @@ function showTip(text, x, y) {
   tip.style.top = Math.max(4, Math.min(innerHeight - tip.offsetHeight - 8, y + 14)) + 'px';
 }
 function hideTip() { $('tip').hidden = true; }
-const groupMeaning = {0: 'Stories between two measured floors, together: the stiffness of their springs in series, which is what these channels show.', 2: 'Viscous damping of these stories together; an equivalent, of which changes mean something and the value little.'};
-const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.', 'Rotational stiffness of the frames against bending at their base; above it as the design has it.'];
+const groupMeaning = {0: 'Stories between two measured floors, together: the stiffness of their springs in series, the only stiffness that these channels determine.', 2: 'Viscous damping of these stories together; an equivalent value, whose changes are more reliable than its size.'};
+const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.', 'Rotational stiffness of the frames against bending at their base; above the base it is fixed to the design.'];
 function reference(i) { return baseline[i] || plan.parameters[i].design || null; }
 const baselineKnown = () => baseline.some(b => b);
 const flows = () => lastMotion > 0 && performance.now() - lastMotion <= kSilence_ms;
 const isNow = i => flows() && estimate !== undefined && estimate.reason[i] === 0;
 const newestUs = () => Math.max(lastRow || 0, estimate ? estimate.end_us : 0);
-// Sensor time now, as far as the page can tell: an old value gets older while nothing comes.
+// Estimates the sensor time now, so that old values age while no data comes.
 const nowUs = () => newestUs() + (flows() || !lastMotion ? 0 : 1e3 * (performance.now() - lastMotion));
 const whyNot = i => estimate ? reasons[estimate.reason[i]] || 'no value' : 'no value yet';
 function fitOf(i) {
@@ -89,7 +89,7 @@ function start(json) {
   strips.drift = new Strip(parent, 'story drift, mm', 'Displacement of the floor above less that below in the frame, by two leaky integrations for the eye; the estimator integrates nothing.', [{name: 'drift', color: 'purple'}], 10, rate);
   strips.k = new Strip(parent, 'stiffness', 'The newest window\'s value with one standard error to either side; baseline dashed.', [{name: 'value', color: 'blue', width: 2}, {name: '+ error', color: 'blue', width: 0.5}, {name: '- error', color: 'blue', width: 0.5, band: true}, {name: 'baseline', color: 'soft', dash: [5, 4]}], 300, 4);
   strips.excitation = new Strip(parent, 'excitation: rms of the base over a second, m/s²', 'Without excitation nothing can be identified.', [{name: 'base rms', color: 'green'}], 300, 4);
-  strips.residual = new Strip(parent, 'residual over response', 'What the identified model leaves of the measured response in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
+  strips.residual = new Strip(parent, 'residual over response', 'Part of the measured response that the identified model does not explain in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
   startSession();
   choose(0);
   const bar = document.createElement('canvas');
@@ -106,7 +106,7 @@ function applyTheme() {
   if (g) for (let x = 0; x < 160; x++) { g.fillStyle = ratioColor(1 + kFullColor * (x / 80 - 1), theme()); g.fillRect(x, 0, 1, 14); }
   for (const s of Object.values(strips)) { s.make(); s.fresh = true; }
 }
-// What happened before the page was opened.
+// Loads the history before the page was opened.
 function before(history) {
   if (!history) return;
   for (const m of history.motion) takeMotion(m);
@@ -124,7 +124,7 @@ function estimatesOf(history) {
     pushResidual({end_us, status, residual});
   }
 }
-// Windows from before the filters were tuned have their values now.
+// Reloads the history, because windows before the tuning of filters have values now.
 function onLate() {
   fetch('history.json').then(r => r.ok ? r.json() : null).then(history => {
     if (!history) return;
@@ -162,10 +162,10 @@ function takeMotion(m) {
   const mean = rms.reduce((a, b) => a + b, 0) / (rms.length || 1);
   strips.excitation.push([seconds(lastRow), Math.sqrt(rms.reduce((a, b) => a + (b - mean) ** 2, 0) / (rms.length || 1))]);
 }
-// Until a gap arrives there is no strip for it.
+// Creates the strip of the gap when the first gap arrives.
 function onGap(g) {
   window.framewatch.gap = g;
-  if (!strips.gap) strips.gap = new Strip($('strips'), 'gap', 'What a simulation with the identified values does not explain of the measurement, rms over rms: of all channels, of the chosen one, and the least that sensor noise allows.', [{name: 'all channels', color: 'orange', width: 2}, {name: 'chosen channel', color: 'blue'}, {name: 'noise floor', color: 'soft', dash: [5, 4]}], 300, 4);
+  if (!strips.gap) strips.gap = new Strip($('strips'), 'gap', 'Part of the measurement that a simulation with the identified values does not explain, rms over rms: of all channels, of the chosen one, and the least that sensor noise allows.', [{name: 'all channels', color: 'orange', width: 2}, {name: 'chosen channel', color: 'blue'}, {name: 'noise floor', color: 'soft', dash: [5, 4]}], 300, 4);
   const i = g.name.indexOf(plan.axes[+$('channel').value].name);
   strips.gap.name('gap between simulation and measurement' + (i < 0 ? '' : `, ${g.name[i]}`));
   strips.gap.push([seconds(g.end_us), g.overall, i < 0 ? null : g.nrmse[i], g.noise_floor]);
@@ -177,7 +177,7 @@ function pushStiffness(e) {
   const v = ok ? e.value[chosen] * f : null, s = ok ? e.error[chosen] * f : 0;
   strips.k.push([seconds(e.end_us), v, ok ? v + s : null, ok ? v - s : null, baseline[chosen] ? baseline[chosen] * f : null]);
 }
-// The newest value of each element stays, with its time.
+// Keeps the newest value of each element with its time.
 function remember(e) {
   e.value.forEach((v, i) => { if (e.reason[i] === 0) known[i] = {value: v, error: e.error[i], us: e.end_us}; });
   if (past.length && e.end_us < past.at(-1).end_us) past.length = 0; // another clock
@@ -237,7 +237,7 @@ async function post(path) {
   else if (answer.status === 202) given(text);
 }
 function warn(text) { showTip(text, innerWidth / 2, 60); setTimeout(hideTip, 8000); }
-// Commands of this page by their ids, and why some were not obeyed: that may come before the id does.
+// Commands of this page by id, and refusals, which may come before the id.
 const ours = new Set(), refusals = new Map();
 function given(id) { ours.add(id); showRefusal(id); }
 function onRefused(r) {
@@ -298,7 +298,7 @@ const root = document.documentElement;
 function useTheme(name) { root.dataset.theme = name; applyTheme(); }
 root.dataset.theme = localStorage.getItem('theme') || (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
 $('theme').onclick = () => { useTheme(root.dataset.theme === 'dark' ? 'light' : 'dark'); localStorage.setItem('theme', root.dataset.theme); };
-// Paper is white; what is on canvases has to be drawn anew for it.
+// Redraws the canvases in light colors for printing.
 let screenTheme = null;
 addEventListener('beforeprint', () => { screenTheme = root.dataset.theme; useTheme('light'); building.draw(); for (const b of boxPlots) b.draw(); for (const s of Object.values(strips)) s.draw(); });
 addEventListener('afterprint', () => { if (screenTheme) useTheme(screenTheme); });

@@ -1,5 +1,5 @@
 'use strict';
-// Acquisition sessions: what `framewatch record` says, and what it is told.
+// Acquisition sessions: the state of `framewatch record` and its commands.
 const sessionStates = ['ready', 'tap test', 'armed', 'recording'];
 let session = null, sessionHeard = 0, asked = null, sessionList = '';
 
@@ -43,7 +43,7 @@ function checkTable(channels) {
   const table = $('check');
   table.replaceChildren();
   if (!channels.length) return;
-  heads(table, ['channel', 'noise, µm/s²/√Hz', 'rms, m/s²', 'rests at, m/s²', 'peak, m/s²', 'of range', 'saturated', 'polarity', '']);
+  heads(table, ['channel', 'noise, µm/s²/√Hz', 'rms, m/s²', 'rests at, m/s²', 'peak, m/s²', 'share of range', 'saturated', 'polarity', '']);
   const body = table.createTBody(), n = (v, d) => v === null ? '?' : v >= 1000 ? v.toFixed(0) : v.toPrecision(d);
   for (const c of channels) {
     const row = body.insertRow();

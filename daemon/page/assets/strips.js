@@ -12,7 +12,7 @@ class Ring {
   }
 }
 const kPause_s = 3; // longer: the line is broken
-// A value that stands alone has no line: summaries of minutes, of before the server was started.
+// Marks values without neighbors: summaries of minutes from before the server started.
 function alone(plot, series) {
   const v = plot.data[series], out = [];
   for (let i = 0; i < v.length; ++i) if (v[i] !== null && (i === 0 || v[i - 1] === null) && (i + 1 === v.length || v[i + 1] === null)) out.push(i);
@@ -49,7 +49,7 @@ class Strip {
     this.box.setAttribute('aria-label', `${title}. ${this.why}`);
   }
   clear() { this.ring = new Ring(this.series.length + 1, this.ring.size); this.last = null; this.fresh = true; }
-  // Values closer than the rate are left out.
+  // Leaves out values that are closer than the rate.
   push(values) {
     if (this.last !== null && values[0] < this.last) this.clear();
     if (this.last !== null && values[0] - this.last < this.least) return;

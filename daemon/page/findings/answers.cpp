@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kSilent_s = 3;
 constexpr int kAllStories = 8, kMaxSwayed = 5;
-constexpr double kStronger = 1.2;  // than the newest shake: worth a line of its own
+constexpr double kStronger = 1.2;  // times the newest shake: gets a separate line
 
 std::string capital(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
@@ -32,7 +32,7 @@ std::vector<const Finding*> of_kind(const Known& known, FindingKind kind) {
   return out;
 }
 
-/// A sentence ends with a full stop.
+/// Appends a full stop unless the text ends with one.
 std::string sentence(std::string text) {
   text = capital(std::move(text));
   if (!text.empty() && text.back() != '.') text += '.';
@@ -73,25 +73,24 @@ Answer is_changed(const Known& k) {
   }
   if (k.with_baseline == 0) {
     out.state = AnswerState::wait;
-    out.line.text = "Not known yet: what it is like unchanged is learned first, while it moves.";
+    out.line.text = "Not known yet: the baseline is still being learned, which needs motion.";
     return out;
   }
   out.line.text =
       k.with_baseline < k.watched
           ? fmt::format("No change found in {} of {} elements; the others have no baseline yet.",
                         k.with_baseline, k.watched)
-          : fmt::format("No. None of {} elements differs from what it was like (its baseline).",
-                        k.watched);
+          : fmt::format("No. None of {} elements differs from its baseline.", k.watched);
   if (k.observable < k.with_baseline)
-    out.more.push_back({fmt::format("Now {} of them have a value: where it hardly moves, the last "
-                                    "values stand.",
+    out.more.push_back({fmt::format("{} of them have a value now; the others keep their last value "
+                                    "until the building moves more.",
                                     k.observable),
                         0, 0});
   return out;
 }
 
 Answer is_believed(const Known& k, const Config& config) {
-  Answer out{"Is what I see to be believed?", AnswerState::good, {}, {}};
+  Answer out{"Can I trust this?", AnswerState::good, {}, {}};
   const std::vector<const Finding*> doubts = of_kind(k, FindingKind::belief);
   std::set<std::string> dead;
   for (const Finding* f : doubts)
@@ -100,12 +99,12 @@ Answer is_believed(const Known& k, const Config& config) {
   if (!k.same_config) out.more.push_back({"The estimator runs with another configuration.", 0, 0});
   if (!k.samples || k.silent_s > kSilent_s) {
     out.state = k.samples ? AnswerState::bad : AnswerState::wait;
-    out.line.text = k.samples ? fmt::format("No: no samples for {}. What is shown is old.",
+    out.line.text = k.samples ? fmt::format("No: no samples for {}. The values shown are old.",
                                             span_text(k.silent_s))
-                              : "There is nothing to believe yet: no samples have come.";
+                              : "Not yet: no samples have come.";
   } else if (k.estimates && k.estimates_silent_s > kSilent_s) {
     out.state = AnswerState::bad;
-    out.line.text = fmt::format("No: samples come, but the estimator says nothing for {}.",
+    out.line.text = fmt::format("No: samples come, but there are no estimates for {}.",
                                 span_text(k.estimates_silent_s));
   } else if (!out.more.empty()) {
     out.state = AnswerState::look;
@@ -141,7 +140,7 @@ std::string story_words(const Shake& shake, const estimator::Structure& s, int s
                      s.frame_name(peak.frame));
 }
 
-/// "Story 3: 0.42 % ± 0.01 % (12.60 mm) in frame y1", by the drifts where they are known.
+/// Returns "Story 3: 0.42 % ± 0.01 % (12.60 mm) in frame y1", from the drifts where known.
 std::string drift_line(const Known& k, const estimator::Structure& s, int story) {
   const auto i = static_cast<std::size_t>(story - 1);
   if (i >= k.drifts.size()) return story_words(*k.newest, s, story);
@@ -153,7 +152,7 @@ std::string drift_line(const Known& k, const estimator::Structure& s, int story)
                      d.interrupted_at_peak() ? "; unknown in part of the strong motion" : "");
 }
 
-/// Every story, downward; of a tall building those that swayed most.
+/// Returns a line for each story from the top; in a tall building, for those with most drift.
 void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
   const Shake& shake = *k.newest;
   std::vector<int> stories(static_cast<std::size_t>(s.stories));
@@ -186,7 +185,7 @@ std::string accel_words(const Shake& shake, const Config& config) {
                      words(peak_accel_mps2(shake.peak, config.pipeline.axes, 0)), words(floors));
 }
 
-/// Whether the report is about this shake: strong motion lies within it.
+/// Returns true when the strong motion of the report lies within the shake.
 bool is_of(const EventReportSummary& report, const Shake& shake) {
   return report.start_us >= shake.from_us && report.start_us <= shake.to_us;
 }
@@ -263,16 +262,17 @@ Answer to_do(const Known& k) {
   });
   std::vector<std::string> steps;
   if (k.samples && k.silent_s > kSilent_s)
-    steps.emplace_back("Find out why no samples come: framewatch status.");
+    steps.emplace_back("Run `framewatch status` to find out why no samples come.");
   else if (k.estimates && k.estimates_silent_s > kSilent_s)
-    steps.emplace_back("Find out why framewatch run says nothing: framewatch status.");
+    steps.emplace_back("Run `framewatch status` to find out why there are no estimates.");
   for (const Finding* f : open)
     if (std::find(steps.begin(), steps.end(), f->advice) == steps.end()) steps.push_back(f->advice);
   if (!k.same_config)
-    steps.emplace_back("Start serve or run anew, so that both have the same configuration.");
+    steps.emplace_back(
+        "Restart framewatch serve or framewatch run, so that both use the same configuration.");
   if (steps.empty()) {
-    out.line.text = !k.samples             ? "Start framewatch run, and whatever sends the samples."
-                    : k.with_baseline == 0 ? "Nothing but wait."
+    out.line.text = !k.samples             ? "Start framewatch run and the source of the samples."
+                    : k.with_baseline == 0 ? "Wait until the baseline is learned."
                                            : "Nothing.";
     out.state = k.samples ? AnswerState::good : AnswerState::wait;
     return out;

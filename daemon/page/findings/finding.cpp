@@ -13,7 +13,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Kinds of events whose place is a channel of which samples are wrong or do not come.
+/// Kinds of events whose place is a channel with wrong or missing samples.
 constexpr std::array kOfChannels = {"channel_silent", "channel_stuck", "absurd_samples",
                                     "two_senders",    "losses",        "channel_table"};
 
@@ -22,7 +22,7 @@ bool is_channel(const Config& config, const std::string& place) {
   return std::any_of(axes.begin(), axes.end(), [&](const auto& a) { return a.name == place; });
 }
 
-/// A message without ", since ...": the finding has the time.
+/// Removes ", since ..." from a message, because the finding has the time.
 std::string without_time(const std::string& message) {
   const std::size_t at = message.rfind(", since ");
   return (at == std::string::npos ? message : message.substr(0, at)) + ".";
@@ -35,14 +35,12 @@ void describe_change(Finding& f, const Config& config) {
   if (f.place == kWholeBuilding) {
     f.text = without_time(f.text);
     f.advice =
-        "Find out which it is: look at temperature, load, and the sensors' scale and clock. If "
-        "none "
-        "explains it, have a structural engineer look at the building.";
+        "Check temperature, load, and the scale and clock of the sensors. If none "
+        "explains the change, have a structural engineer inspect the building.";
     return;
   }
   f.advice = fmt::format(
-      "Have a structural engineer look at {} before the building is used as before; then "
-      "acknowledge "
+      "Have a structural engineer inspect {} before normal use continues; then acknowledge "
       "the finding.",
       at ? place_words(f.place) : f.place);
   const std::size_t at_recovery = f.text.find(kAfterStrongMotion);
@@ -61,26 +59,28 @@ void describe_change(Finding& f, const Config& config) {
 void describe_strong_motion(Finding& f) {
   f.kind = FindingKind::shake;
   f.text = f.text.substr(0, f.text.find("; report ")) + ".";
-  f.advice =
-      f.severity == severity::alarm
-          ? "Have a structural engineer look at the building before it is used as before: the "
-            "report of the strong motion says where."
-          : "Have a structural engineer read the report of the strong motion: it says what to look "
-            "at.";
+  f.advice = f.severity == severity::alarm
+                 ? "Have a structural engineer inspect the building before normal use continues. "
+                   "The report of the strong motion lists where."
+                 : "Have a structural engineer read the report of the strong motion. It lists what "
+                   "to inspect.";
 }
 
 void describe_channel(Finding& f, const std::string& kind) {
   f.kind = FindingKind::belief;
   f.of_channel = true;
   if (kind == "channel_silent" || kind == "channel_stuck")
-    f.advice = fmt::format("Look at sensor {}: power, cable, mounting.", f.place);
+    f.advice = fmt::format("Check the power, cable and mounting of sensor {}.", f.place);
   else if (kind == "absurd_samples")
-    f.advice = fmt::format("Look at sensor {}: its values are not possible.", f.place);
+    f.advice = fmt::format("Check sensor {}: its values are impossible.", f.place);
   else if (kind == "two_senders" || kind == "channel_table")
-    f.advice = fmt::format("Find out who else sends as {}: a node's number given twice?", f.place);
+    f.advice = fmt::format(
+        "Find the other node that sends as {}: two nodes may have the same number.", f.place);
   else
-    f.advice = fmt::format("Look at the network of {}: samples are lost.", f.place);
+    f.advice = fmt::format("Check the network of {}: samples are lost.", f.place);
 }
+
+constexpr int kIdentifies = 1;  // window_estimate_t::status
 
 }  // namespace
 
@@ -106,10 +106,48 @@ Finding finding_of(const event_t& e, const Config& config) {
     describe_channel(f, e.kind);
   } else if (e.kind == "sequence_leap") {
     f.advice =
-        "Nothing, if sensor nodes were started anew; else find out who sends under their numbers.";
+        "Nothing if sensor nodes restarted; otherwise find out which other node sends with their "
+        "numbers.";
   } else {
-    f.advice = fmt::format("See to {} {}: framewatch status says more.", e.kind, e.place);
+    f.advice = fmt::format("Check {} {}. Run `framewatch status` for details.", e.kind, e.place);
   }
+  return f;
+}
+
+void ModelFit::push(const window_estimate_t& e) {
+  const double step_s =
+      std::clamp(1e-6 * static_cast<double>(e.window_end_us - last_us_), 0.0, 1.0);
+  last_us_ = e.window_end_us;
+  const bool shown = e.status == kIdentifies && std::isfinite(e.residual_ratio) &&
+                     std::find(e.reason.begin(), e.reason.end(), 0) != e.reason.end();
+  if (!shown) return;
+  const double square = e.residual_ratio * e.residual_ratio;
+  seconds_ = std::min(seconds_ + step_s, kMean_s);
+  mean_ += (seconds_ > 0 ? std::min(1.0, step_s / seconds_) : 1) * (square - mean_);
+  if (seconds_ < kMean_s) return;
+  const double residual = std::sqrt(mean_);
+  if (fits_ && residual > kMax) {
+    fits_ = false;
+    since_us_ = e.window_end_us - static_cast<std::int64_t>(1e6 * kMean_s);
+  } else if (!fits_ && residual < kAgain) {
+    fits_ = true;
+  }
+}
+
+std::optional<double> ModelFit::residual() const {
+  if (seconds_ <= 0) return std::nullopt;
+  return std::sqrt(mean_);
+}
+
+std::optional<Finding> ModelFit::finding() const {
+  if (fits_) return std::nullopt;
+  Finding f;
+  f.kind = FindingKind::belief;
+  f.severity = severity::warning;
+  f.since_us = since_us_;
+  f.text = fmt::format("The model does not fit: it leaves {:.0f} % of the motion unexplained.",
+                       100 * std::sqrt(mean_));
+  f.advice = "Find out what the model lacks: framewatch diagnose, with a record of this motion.";
   return f;
 }
 

@@ -6,9 +6,9 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kNoiseSigmas = 8;  // no noise reaches that within a year
+constexpr double kNoiseSigmas = 8;  // noise does not reach it within a year
 
-/// RMS of the sensors' noise, as far as it is known.
+/// Returns the rms of the sensors' noise; unknown noise counts as zero.
 double noise_mps2(const estimator::PipelineConfig& config) {
   double density = 0;
   for (const estimator::SensorAxis& axis : config.axes)

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
@@ -22,17 +25,99 @@
 #include "daemon/monitor/service/health.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/findings/finding.h"
-#include "daemon/page/findings/status_json.h"
 #include "drivers/lcm/lcm_source.h"
 
 namespace framewatch::daemon {
 namespace {
 
+std::int64_t sum_of(const std::vector<std::int64_t>& values) {
+  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
+}
+
+/// Returns the output of `framewatch status --json`. odd: the problems found. Requires
+/// heard.service. now_us: host clock.
+std::string status_json(const Heard& h, const Config& config, const std::vector<std::string>& odd,
+                        const std::optional<UnitState>& unit, std::int64_t now_us) {
+  const service_t& s = *h.service;
+  nlohmann::json out{{"well", odd.empty()},
+                     {"odd", odd},
+                     {"version", s.version},
+                     {"config", s.config},
+                     {"config_sha256", s.config_sha256},
+                     {"config_on_disk_sha256", sha256_of_file(config.path)},
+                     {"started_us", s.started_us},
+                     {"starts", s.starts},
+                     {"unclean_starts", s.unclean_starts},
+                     {"resumed", s.resumed != 0},
+                     {"silent_s", silent_s(s, now_us)},
+                     {"state_written_us", s.state_written_us},
+                     {"disk_free_bytes", s.disk_free_bytes},
+                     {"resident_bytes", s.resident_bytes},
+                     {"reloads", s.reloads},
+                     {"reloads_refused", s.reloads_refused}};
+  if (h.status) {
+    out["windows"] = h.status->windows;
+    out["latency_s"] = h.status->latency_s;
+    out["lost"] = sum_of(h.status->lost);
+    out["rejected"] = sum_of(h.status->rejected);
+  }
+  if (h.reception)
+    out["dropped"] = {{"elsewhere", h.reception->datagrams_elsewhere},
+                      {"malformed", h.reception->datagrams_malformed},
+                      {"overflowed", h.reception->datagrams_overflowed},
+                      {"unfinished", h.reception->messages_unfinished},
+                      {"queue_full", h.reception->messages_dropped}};
+  if (h.watch) {
+    const watch_t& w = *h.watch;
+    out["watch"] = {{"baseline", w.baseline},
+                    {"baseline_std_error", w.baseline_std_error},
+                    {"baseline_degc", w.baseline_degc},
+                    {"quiet_learned_ratio", w.quiet_learned_ratio},
+                    {"quiet_baseline", w.quiet_baseline},
+                    {"quiet_std_error", w.quiet_std_error},
+                    {"per_degc", w.per_degc},
+                    {"per_degc_std_error", w.per_degc_std_error},
+                    {"per_log_amplitude", w.per_log_amplitude},
+                    {"per_log_amplitude_std_error", w.per_log_amplitude_std_error},
+                    {"temperature_degc", w.temperature_degc}};
+  }
+  if (h.uplink)
+    out["hub"] = {{"building", h.uplink->building},
+                  {"connected", h.uplink->connected != 0},
+                  {"acknowledged_us", h.uplink->acknowledged_us},
+                  {"events_waiting", h.uplink->events_waiting},
+                  {"summaries_waiting", h.uplink->summaries_waiting},
+                  {"pieces_waiting", h.uplink->pieces_waiting},
+                  {"refused", h.uplink->refused}};
+  if (unit)
+    out["systemd"] = {{"active", unit->active},
+                      {"sub", unit->sub},
+                      {"result", unit->result},
+                      {"restarts", unit->restarts}};
+  out["events"] = nlohmann::json::array();
+  for (std::size_t i = 0; i < s.event_id.size(); ++i) {
+    const auto at = acknowledgement_of(h, s.event_id[i]);
+    nlohmann::json known;
+    if (at)
+      known = {{"time_us", h.acknowledged->since_us[*at]},
+               {"who", h.acknowledged->who[*at]},
+               {"comment", h.acknowledged->comment[*at]}};
+    out["events"].push_back({{"id", s.event_id[i]},
+                             {"since_us", s.event_since_us[i]},
+                             {"severity", s.event_severity[i]},
+                             {"kind", s.event_kind[i]},
+                             {"place", s.event_place[i]},
+                             {"message", s.event_message[i]},
+                             {"acknowledged", known}});
+  }
+  return out.dump(2, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
 constexpr int kNotWell = 1, kUnreachable = 2;
 constexpr std::int64_t kListen_us = 4'000'000;
 constexpr int kPoll_ms = 100;
 
-/// Per second of sensor time while somebody listened; empty when nothing came twice.
+/// Returns the increase per second of sensor time; nullopt unless two reports came.
 std::optional<double> rate(const Heard& h, std::int64_t first, std::int64_t last) {
   const double seconds =
       h.first_status ? 1e-6 * static_cast<double>(h.status->time_us - h.first_status->time_us) : 0;
@@ -53,9 +138,9 @@ void print_process(const service_t& s, std::int64_t now_us) {
       fmt::format("for {}, since {}", span_text(1e-6 * static_cast<double>(now_us - s.started_us)),
                   utc_and_local_text(s.started_us));
   if (s.starts > 0)
-    running += fmt::format("; {}; {} starts, {} unasked",
-                           s.resumed != 0 ? "went on from its state" : "began anew", s.starts,
-                           s.unclean_starts);
+    running += fmt::format("; {}; {} starts, {} after a crash",
+                           s.resumed != 0 ? "resumed from its state file" : "started afresh",
+                           s.starts, s.unclean_starts);
   line("running", running);
   if (s.state_written_us > 0)
     line("state", fmt::format("written {} ago, {:.1f} GB of disk free",
@@ -66,10 +151,10 @@ void print_process(const service_t& s, std::int64_t now_us) {
                               100e6 * s.cpu_s / static_cast<double>(now_us - s.started_us)));
 }
 
-/// Which configuration it runs with, and whether the file still is that one.
+/// Prints the running configuration and whether the file at `path` still has its content.
 void print_config(const service_t& s, const std::string& path) {
   std::string text = fmt::format("{}, sha256 {:.12}", s.config, s.config_sha256);
-  if (s.reloads > 0) text += fmt::format(", read anew {} times", s.reloads);
+  if (s.reloads > 0) text += fmt::format(", reloaded {} times", s.reloads);
   const std::string now = sha256_of_file(path);
   line("config", text + (now == s.config_sha256 ? ", as it is on the disk"
                          : now.empty()          ? fmt::format("; {} cannot be read", path)
@@ -108,8 +193,7 @@ void print_estimates(const Heard& h) {
                             100 * h.gap->overall_nrmse, 100 * h.gap->noise_floor));
 }
 
-/// Median of what is known; empty when nothing is.
-/// What changes are judged against.
+/// Prints the baseline that changes are measured against.
 void print_watch(const Heard& h) {
   if (!h.watch) return;
   const watch_t& w = *h.watch;
@@ -120,14 +204,14 @@ void print_watch(const Heard& h) {
     return count;
   };
   std::string text = known(w.baseline) + known(w.quiet_baseline) == 0
-                         ? std::string("no baseline yet, nothing is compared")
+                         ? std::string("no baseline yet, changes are not detected")
                          : fmt::format("{} of {} stiffnesses have a baseline", known(w.baseline),
                                        std::count(w.watched.begin(), w.watched.end(), 1));
   if (w.long_window_s > 0)
     text += w.quiet_learned_ratio < 1
-                ? fmt::format(", the one of weak motion is {:.0f} % learned",
+                ? fmt::format(", the baseline of weak motion is {:.0f} % learned",
                               100 * w.quiet_learned_ratio)
-                : fmt::format(", {} one of weak motion", known(w.quiet_baseline));
+                : fmt::format(", {} a baseline of weak motion", known(w.quiet_baseline));
   if (const double slope = median(w.per_degc); std::isfinite(slope))
     text += fmt::format("; {:+.2f} % per degC (median)", 100 * slope);
   if (std::isfinite(w.temperature_degc)) text += fmt::format("; {:.1f} degC", w.temperature_degc);
@@ -148,22 +232,23 @@ void print_actions(const Heard& h) {
   if (!h.actions) return;
   std::string text;
   for (std::size_t i = 0; i < h.actions->name.size(); ++i)
-    text += fmt::format("{}{}: {} events told, {} wait, {} lost", i == 0 ? "" : "; ",
+    text += fmt::format("{}{}: {} events sent, {} waiting, {} lost", i == 0 ? "" : "; ",
                         h.actions->name[i], h.actions->told[i], h.actions->waiting[i],
                         h.actions->lost[i]);
   line("actions", text);
 }
 
-/// What LCM's receiver did not take, if there was anything.
+/// Prints the messages that the LCM receiver dropped, if any.
 void print_reception(const Heard& h) {
   if (!h.reception) return;
   const reception_t& r = *h.reception;
   std::vector<std::string> dropped;
-  for (const auto& [count, what] : {std::pair{r.datagrams_elsewhere, "datagrams from elsewhere"},
-                                    std::pair{r.datagrams_malformed, "that are no LCM"},
-                                    std::pair{r.datagrams_overflowed, "by a full receive buffer"},
-                                    std::pair{r.messages_unfinished, "unfinished messages"},
-                                    std::pair{r.messages_dropped, "messages by a full queue"}})
+  for (const auto& [count, what] :
+       {std::pair{r.datagrams_elsewhere, "datagrams over other interfaces"},
+        std::pair{r.datagrams_malformed, "datagrams that are not LCM"},
+        std::pair{r.datagrams_overflowed, "datagrams in a full receive buffer"},
+        std::pair{r.messages_unfinished, "unfinished messages"},
+        std::pair{r.messages_dropped, "messages in a full queue"}})
     if (count > 0) dropped.push_back(fmt::format("{} {}", count, what));
   if (!dropped.empty()) line("dropped", fmt::format("{}", fmt::join(dropped, ", ")));
 }
@@ -192,7 +277,7 @@ void print_hub(const Heard& h, std::int64_t now_us) {
           ? "nothing acknowledged yet"
           : fmt::format("newest acknowledged {} ago",
                         span_text(1e-6 * static_cast<double>(now_us - s.acknowledged_us)));
-  line("hub", fmt::format("{} wait, {}{}", waiting, newest,
+  line("hub", fmt::format("{} waiting, {}{}", waiting, newest,
                           s.connected != 0 ? "" : ", no connection: " + s.link_trouble));
 }
 
@@ -200,7 +285,7 @@ void print_can(const Heard& h) {
   if (!h.can) return;
   for (std::size_t b = 0; b < h.can->interface.size(); ++b)
     line("can", h.can->state[b] < 0
-                    ? h.can->interface[b] + ": not there"
+                    ? h.can->interface[b] + ": missing"
                     : fmt::format("{}: {:.0f} frames a second, {:.0f} % load", h.can->interface[b],
                                   h.can->frames_hz[b], 100 * h.can->load[b]));
 }
@@ -226,7 +311,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   for (const std::string& sentence : odd) line("odd", sentence);
 }
 
-/// Where the daemon is heard, from a file that is wrong: as far as it says so.
+/// Returns a configuration with only the [lcm] section of a file that has errors.
 Config only_lcm(const std::string& path) {
   Config out;
   out.path = path;
@@ -265,19 +350,19 @@ int status_command(const StatusArguments& a) {
     print_problems(problems);
     if (unit) fmt::print(stderr, "framewatch.service: {}\n", unit_text(*unit));
     fmt::print(stderr,
-               "framewatch status: nothing is heard of framewatch run on {} with prefix {}: "
+               "framewatch status: nothing is heard from framewatch run on {} with prefix {}: run "
                "systemctl status framewatch\n",
                url, config->lcm.prefix);
     return kUnreachable;
   }
   const std::int64_t now_us = host_clock_us();
-  if (wrong) config->sha256 = heard.service->config_sha256;  // what is wrong is said once
+  if (wrong) config->sha256 = heard.service->config_sha256;  // reports the wrong file only once
   const auto words = [&](const event_t& e) { return finding_of(e, *config).text; };
   std::vector<std::string> odd = oddities(heard, *config, now_us, words);
   if (wrong)
     odd.push_back(
-        fmt::format("its configuration file is wrong now, it goes on with what it had "
-                    "read before, and would not start again: {}: {}",
+        fmt::format("its configuration file is wrong now: it keeps the previous configuration but "
+                    "would not start again: {}: {}",
                     problems.front().where, problems.front().message));
   if (const std::string why = unit ? unit_oddity(*unit) : ""; !why.empty()) odd.push_back(why);
   if (a.json)

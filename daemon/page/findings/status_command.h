@@ -12,8 +12,8 @@ struct StatusArguments {
   bool json = false;
 };
 
-/// framewatch status: whether the running daemon is well, and what is not. Exit code: 0 well, 1 not
-/// well, 2 nothing is heard of it, or bad configuration.
+/// Runs `framewatch status`: listens to the running daemon and prints its state and problems.
+/// Returns the exit status: 0 healthy, 1 problems found, 2 no daemon heard or bad configuration.
 int status_command(const StatusArguments& arguments);
 
 }  // namespace framewatch::daemon

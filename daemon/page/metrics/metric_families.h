@@ -24,33 +24,36 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/monitor/event_report/event_report_files.h"
-#include "daemon/page/metrics/page_use.h"
+#include "daemon/page/metrics/metrics.h"
 
 namespace framewatch::daemon {
 
-/// Collects metrics by name, in the order of the calls.
+/// Collects metrics for Prometheus, in the order of the calls.
 class MetricFamilies {
  public:
   using Labels = std::vector<std::pair<std::string, std::string>>;
 
-  /// Begins a metric; the next values belong to it.
+  /// Begins a metric. The next values belong to it.
   MetricFamilies& gauge(const char* name, const char* help);
   MetricFamilies& counter(const char* name, const char* help);
-  MetricFamilies& value(double value, const Labels& labels = {});
-  /// A value of each name, labelled `label`; none where it is not finite. `more`: on all of them.
+  template <typename Number>
+  MetricFamilies& value(Number value, const Labels& labels = {}) {
+    return add_value(static_cast<double>(value), labels);
+  }
+  /// Adds the finite values, each with its name in `label`. more: labels of every value.
   template <typename Values>
   MetricFamilies& each(const char* label, const std::vector<std::string>& names,
                        const Values& values, const Labels& more = {}) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto one = static_cast<double>(values[i]);
-      if (!std::isfinite(one)) continue;
+      if (!std::isfinite(static_cast<double>(values[i]))) continue;
       Labels labels{{label, names[i]}};
       labels.insert(labels.end(), more.begin(), more.end());
-      value(one, labels);
+      value(values[i], labels);
     }
     return *this;
   }
-  /// limit_s: upper limits, the last one infinite; counts: between them.
+  /// Adds a histogram. limit_s: upper limits, the last one infinite. counts: number of durations
+  /// between two limits.
   void histogram(const char* name, const char* help, const std::vector<double>& limit_s,
                  const std::vector<std::int64_t>& counts, double sum_s);
 
@@ -58,11 +61,12 @@ class MetricFamilies {
 
  private:
   MetricFamilies& family(const char* name, const char* help, prometheus::MetricType type);
+  MetricFamilies& add_value(double value, const Labels& labels);
 
   std::vector<prometheus::MetricFamily> families_;
 };
 
-// The contents of each message as metrics.
+// Append the fields of a message as metrics.
 void add_service(MetricFamilies& out, const service_t& service);
 void add_status(MetricFamilies& out, const status_t& status);
 void add_estimate(MetricFamilies& out, const parameter_table_t& table,
@@ -75,8 +79,7 @@ void add_actions(MetricFamilies& out, const action_status_t& actions);
 void add_reception(MetricFamilies& out, const reception_t& reception);
 void add_uplink(MetricFamilies& out, const uplink_status_t& uplink);
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
-/// report: the newest of [event_report], if there is one.
+/// report: the newest report of [event_report], if any.
 void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report);
-void add_page_use(MetricFamilies& out, const PageUse& use);
 
 }  // namespace framewatch::daemon

@@ -1,108 +1,84 @@
 #include "daemon/page/metrics/metrics.h"
 
-#include <framewatch/action_status_t.hpp>
-#include <framewatch/can_status_t.hpp>
-#include <framewatch/event_t.hpp>
-#include <framewatch/gap_t.hpp>
-#include <framewatch/history_status_t.hpp>
-#include <framewatch/parameter_table_t.hpp>
-#include <framewatch/reception_t.hpp>
-#include <framewatch/service_t.hpp>
-#include <framewatch/status_t.hpp>
-#include <framewatch/uplink_status_t.hpp>
-#include <framewatch/watch_t.hpp>
-#include <framewatch/window_estimate_t.hpp>
-
 #include "daemon/base/process_usage.h"
 #include "daemon/page/metrics/metric_families.h"
-#include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr const char* kStiffnessChange = "stiffness_change";
 
+void add_page_use(MetricFamilies& out, const PageUse& use) {
+  out.gauge("serve_viewers", "Open pages of framewatch serve.").value(use.viewers);
+  out.gauge("serve_connections", "Connections of requests and answers, by state.")
+      .value(use.waiting, {{"state", "request"}})
+      .value(use.answering, {{"state", "answer"}});
+  out.counter("serve_connections_ended_total", "Connections ended by framewatch serve, by reason.")
+      .value(use.late_requests, {{"reason", "late_request"}})
+      .value(use.late_answers, {{"reason", "late_answer"}})
+      .value(use.crowded_out, {{"reason", "crowded"}});
+  out.counter("serve_viewers_refused_total", "Viewers refused because all places were taken.")
+      .value(use.viewers_refused);
+}
+
 }  // namespace
 
 void Metrics::message(const std::string& channel, const void* data, std::size_t size,
                       std::int64_t now_us) {
-  const std::string& prefix = config_.lcm.prefix;
-  if (!channel.starts_with(prefix)) return;
-  const std::string name = channel.substr(prefix.size());
-  const auto* bytes = static_cast<const std::uint8_t*>(data);
-  if (name == "EVENT") {
-    const auto e = drivers::decoded<event_t>({bytes, size});
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (e && !config_.watch && e->kind == kStiffnessChange) found_here_.note(*e);
-    return;
-  }
-  for (const char* wanted : {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "WATCH", "CAN",
-                             "HISTORY", "ACTIONS", "RECEPTION", "UPLINK"}) {
-    if (name != wanted) continue;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    Newest& newest = newest_[name];
-    newest.bytes.assign(bytes, bytes + size);
-    newest.received_us = now_us;
-  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto changed = latest_.update(channel, {static_cast<const std::uint8_t*>(data), size});
+  if (!changed) return;
+  received_us_[*changed] = now_us;
+  if (changed == DaemonMessage::event && !config_.watch && latest_.event->kind == kStiffnessChange)
+    found_here_.note(*latest_.event);
 }
 
 std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
-  std::map<std::string, std::vector<std::uint8_t>> fresh;
-  RaisedEvents raised;
-  std::optional<EventReportSummary> report;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    const auto service = newest_.find("SERVICE");
-    const bool up = service != newest_.end() && now_us - service->second.received_us <= kFresh_us;
-    for (const auto& [name, newest] : newest_)
-      if (now_us - newest.received_us <= kFresh_us ||
-          (up && name != "ESTIMATE" && name != "UPLINK"))
-        fresh[name] = newest.bytes;
-    raised = found_here_;
-    report = reports_.poll();
-  }
-  const auto service = drivers::decoded<service_t>(fresh["SERVICE"]);
-  const auto status = drivers::decoded<status_t>(fresh["STATUS"]);
-  const auto table = drivers::decoded<parameter_table_t>(fresh["PARAMETERS"]);
-  const auto estimate = drivers::decoded<window_estimate_t>(fresh["ESTIMATE"]);
-  const auto gap = drivers::decoded<gap_t>(fresh["GAP"]);
-  const auto watch = drivers::decoded<watch_t>(fresh["WATCH"]);
-  const auto can = drivers::decoded<can_status_t>(fresh["CAN"]);
-  const auto history = drivers::decoded<history_status_t>(fresh["HISTORY"]);
-  const auto actions = drivers::decoded<action_status_t>(fresh["ACTIONS"]);
-  const auto reception = drivers::decoded<reception_t>(fresh["RECEPTION"]);
-  const auto uplink = drivers::decoded<uplink_status_t>(fresh["UPLINK"]);
+  std::unique_lock<std::mutex> lock(mutex_);
+  LatestMessages fresh = latest_;
+  const auto is_fresh = [&](DaemonMessage message) {
+    const auto at = received_us_.find(message);
+    return at != received_us_.end() && now_us - at->second <= kFresh_us;
+  };
+  const bool up = is_fresh(DaemonMessage::service);
+  for (const auto& [message, at_us] : received_us_)
+    if (!is_fresh(message) &&
+        (!up || message == DaemonMessage::estimate || message == DaemonMessage::uplink))
+      fresh.forget(message);
+  RaisedEvents raised = found_here_;
+  const std::optional<EventReportSummary> report = reports_.poll();
+  lock.unlock();
   MetricFamilies out;
-  out.gauge("up", "1: framewatch run has been heard of in the last 5 s.").value(service ? 1 : 0);
-  if (service) {
-    add_service(out, *service);
-    for (std::size_t i = 0; i < service->event_id.size(); ++i) {
+  out.gauge("up", "1: framewatch run has published in the last 5 s.").value(fresh.service ? 1 : 0);
+  if (fresh.service) {
+    add_service(out, *fresh.service);
+    for (std::size_t i = 0; i < fresh.service->event_id.size(); ++i) {
       event_t e{};
-      e.id = service->event_id[i];
+      e.id = fresh.service->event_id[i];
       e.state = 1;
-      e.severity = service->event_severity[i];
-      e.kind = service->event_kind[i];
+      e.severity = fresh.service->event_severity[i];
+      e.kind = fresh.service->event_kind[i];
       raised.note(e);
     }
   }
-  if (status) add_status(out, *status);
-  if (table && estimate) add_estimate(out, *table, *estimate);
-  if (table && watch) add_watch(out, *table, *watch);
-  if (gap) add_gap(out, *gap);
-  if (can) add_can(out, *can);
-  if (history) add_history(out, *history);
-  if (actions) add_actions(out, *actions);
-  if (reception) add_reception(out, *reception);
+  if (fresh.status) add_status(out, *fresh.status);
+  if (fresh.parameters && fresh.estimate) add_estimate(out, *fresh.parameters, *fresh.estimate);
+  if (fresh.parameters && fresh.watch) add_watch(out, *fresh.parameters, *fresh.watch);
+  if (fresh.gap) add_gap(out, *fresh.gap);
+  if (fresh.can) add_can(out, *fresh.can);
+  if (fresh.history) add_history(out, *fresh.history);
+  if (fresh.actions) add_actions(out, *fresh.actions);
+  if (fresh.reception) add_reception(out, *fresh.reception);
   if (config_.fleet)
-    out.gauge("uplink_up", "1: framewatch uplink has been heard of in the last 5 s.")
-        .value(uplink ? 1 : 0);
-  if (uplink) add_uplink(out, *uplink);
+    out.gauge("uplink_up", "1: framewatch uplink has published in the last 5 s.")
+        .value(fresh.uplink ? 1 : 0);
+  if (fresh.uplink) add_uplink(out, *fresh.uplink);
   add_events(out, raised.all());
   if (config_.event_report) add_event_report(out, report);
   const ProcessUsage usage = process_usage();
   add_page_use(out, use);
   out.gauge("serve_resident_memory_bytes", "Memory of framewatch serve.")
-      .value(static_cast<double>(usage.resident_bytes));
+      .value(usage.resident_bytes);
   out.counter("serve_cpu_seconds_total", "Processor time of framewatch serve.").value(usage.cpu_s);
   return out.text();
 }

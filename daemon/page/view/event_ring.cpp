@@ -22,7 +22,7 @@ std::size_t EventRing::read(Cursor& cursor, char* buffer, std::size_t size) cons
       if (cursor.next == count_) break;
       cursor.offset = 0;
       if (count_ - cursor.next > events_.size()) {
-        // The oldest will be overwritten soon too: continue with the newest.
+        // The oldest event will be overwritten soon too, so continue with the newest.
         const std::uint64_t lost = count_ - 1 - cursor.next;
         cursor.dropped += lost;
         cursor.next = count_ - 1;

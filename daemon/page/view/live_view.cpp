@@ -6,13 +6,7 @@
 #include <span>
 #include <utility>
 
-#include <framewatch/acknowledged_t.hpp>
-#include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
-#include <framewatch/gap_t.hpp>
-#include <framewatch/service_t.hpp>
-#include <framewatch/session_status_t.hpp>
-#include <framewatch/status_t.hpp>
 
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/publisher.h"
@@ -37,6 +31,7 @@ LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give
     : config_(config),
       publish_(std::move(publish)),
       estimate_channels_(estimate_channels(config)),
+      latest_(config.lcm.prefix),
       motion_(config.pipeline.options.rate_hz),
       acquisition_(config.pipeline.axes, config.pipeline.options),
       intake_(
@@ -74,16 +69,19 @@ void LiveView::restore(const StoredHistory& stored, std::int64_t now_us) {
       history_.motion(rows, flush, kFlushesPerSecond);
     }
   }
-  // A clock that does not count from 1970 does not say how long ago that was.
+  // The age of the samples is unknown when their clock does not count from 1970.
   motion_at_ =
       last_us > kYear2000_us ? -std::max<std::int64_t>(0, now_us - last_us) / kFlush_us : 0;
 }
 
 std::vector<std::string> LiveView::channels() const {
   std::vector<std::string> out = sample_channels(config_);
-  for (const char* name : {"PARAMETERS", "STATUS", "EVENT", "GAP", "MODEL_FIT", "CAN", "SESSION",
-                           "SERVICE", "ACKNOWLEDGED", "WATCH"})
-    out.push_back(config_.lcm.prefix + name);
+  for (std::string& channel :
+       latest_.channels({DaemonMessage::parameters, DaemonMessage::status, DaemonMessage::event,
+                         DaemonMessage::gap, DaemonMessage::model_fit, DaemonMessage::can,
+                         DaemonMessage::session, DaemonMessage::service,
+                         DaemonMessage::acknowledged, DaemonMessage::watch}))
+    out.push_back(std::move(channel));
   out.insert(out.end(), estimate_channels_.begin(), estimate_channels_.end());
   out.push_back(estimate_channels_.front() + kLate);
   return out;
@@ -103,7 +101,7 @@ void LiveView::push_alarms(const std::vector<std::string>& alarms) {
   for (const std::string& alarm : alarms) ring_.push("alarm", alarm);
 }
 
-/// Pushes an event that a viewer who joins later gets at once.
+/// Pushes an event and keeps it for viewers that join later.
 void LiveView::keep(const std::string& name, std::string json) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ring_.push(name, json);
@@ -112,39 +110,38 @@ void LiveView::keep(const std::string& name, std::string json) {
 
 void LiveView::message(const std::string& channel, const void* data, std::size_t size,
                        const drivers::LcmSender& sender, std::int64_t received_us) {
-  const std::string& prefix = config_.lcm.prefix;
-  if (!channel.starts_with(prefix)) {
+  if (!channel.starts_with(config_.lcm.prefix)) {
     (void)intake_.message(channel, data, size, sender, received_us);
     return;
   }
-  const std::string name = channel.substr(prefix.size());
-  const std::span bytes(static_cast<const std::uint8_t*>(data), size);
-  if (name == "PARAMETERS") {
-    parameters(bytes);
-  } else if (channel == estimate_channels_.front() + kLate) {
-    late_estimate(bytes);
-  } else if (name.starts_with("ESTIMATE")) {
-    estimate(channel, bytes);
-  } else if (name == "STATUS") {
-    if (const auto s = drivers::decoded<status_t>(bytes)) {
-      same_config_ = s->config_sha256 == config_.sha256;
-      keep("status", status_json(*s, config_.sha256));
-    }
-  } else if (name == "WATCH") {
-    if (auto w = drivers::decoded<watch_t>(bytes)) told_watch_ = std::move(*w);
-  } else if (name == "SESSION") {
-    if (const auto s = drivers::decoded<session_status_t>(bytes))
-      keep("session", session_status_json(*s));
-  } else if (name == "CAN") {
-    if (const auto s = drivers::decoded<can_status_t>(bytes)) keep("can", can_json(*s));
-  } else if (name == "GAP") {
-    if (const auto gap = drivers::decoded<gap_t>(bytes)) keep("gap", gap_json(*gap));
-  } else if (name == "MODEL_FIT") {
-    const auto fit = drivers::decoded<model_fit_t>(bytes);
-    if (fit && static_cast<std::size_t>(fit->parameters) == parameters_.size())
-      keep("fit", model_fit_json(*fit));
-  } else {
-    alarms_message(name, bytes);
+  const std::span payload(static_cast<const std::uint8_t*>(data), size);
+  if (const auto changed = latest_.update(channel, payload))
+    show(*changed);
+  else
+    other_estimate(channel, payload);
+}
+
+void LiveView::show(DaemonMessage changed) {
+  switch (changed) {
+    case DaemonMessage::parameters:
+      return parameters(*latest_.parameters);
+    case DaemonMessage::estimate:
+      return estimate(0, *latest_.estimate);
+    case DaemonMessage::status:
+      same_config_ = latest_.status->config_sha256 == config_.sha256;
+      return keep("status", status_json(*latest_.status, config_.sha256));
+    case DaemonMessage::session:
+      return keep("session", session_status_json(*latest_.session));
+    case DaemonMessage::can:
+      return keep("can", can_json(*latest_.can));
+    case DaemonMessage::gap:
+      return keep("gap", gap_json(*latest_.gap));
+    case DaemonMessage::model_fit:
+      if (static_cast<std::size_t>(latest_.model_fit->parameters) == parameters_.size())
+        keep("fit", model_fit_json(*latest_.model_fit));
+      return;
+    default:
+      return show_alarms(changed);
   }
 }
 
@@ -152,17 +149,79 @@ bool LiveView::found_here(const event_t& event) const {
   return !config_.watch && event.kind == "stiffness_change";
 }
 
-void LiveView::alarms_message(const std::string& name, std::span<const std::uint8_t> bytes) {
+void LiveView::show_alarms(DaemonMessage changed) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (name == "EVENT") {
-    const auto e = drivers::decoded<event_t>(bytes);
-    if (e) push_alarms({found_here(*e) ? alarms_.note_own(*e) : alarms_.note(*e)});
-  } else if (name == "SERVICE") {
-    if (const auto s = drivers::decoded<service_t>(bytes)) push_alarms(alarms_.still_raised(*s));
-  } else if (name == "ACKNOWLEDGED") {
-    if (auto a = drivers::decoded<acknowledged_t>(bytes))
-      push_alarms(alarms_.acknowledged(std::move(*a)));
+  if (changed == DaemonMessage::event) {
+    const event_t& e = *latest_.event;
+    push_alarms({found_here(e) ? alarms_.note_own(e) : alarms_.note(e)});
+  } else if (changed == DaemonMessage::service) {
+    push_alarms(alarms_.still_raised(*latest_.service));
+  } else if (changed == DaemonMessage::acknowledged) {
+    push_alarms(alarms_.acknowledged(*latest_.acknowledged));
   }
+}
+
+void LiveView::parameters(const parameter_table_t& table) {
+  if (table.name == parameters_) return;
+  parameters_ = table.name;
+  watch_.reset();
+  // Estimates for another building's configuration are shown but not watched.
+  same_parameters_ = parameters_ == parameter_names(config_);
+  if (same_parameters_) watch_.emplace(config_, std::max<std::int64_t>(1, table.time_us));
+}
+
+void LiveView::estimate(int window, const window_estimate_t& found) {
+  // Rejects times that would overflow in later arithmetic.
+  if (found.window_end_us > drivers::kLatestTime_us ||
+      found.window_end_us < -drivers::kLatestTime_us)
+    return;
+  look_for_changes(window, found);
+  if (window != 0) return;
+  new_estimate_ = true;
+  estimate_at_ = flushes_;
+  fit_.push(found);
+  if (found.value.size() == parameters_.size() && same_parameters_)
+    shaking_.follow(decoded_estimate(window, found));
+  newest_ = found;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  history_.estimate(found);
+}
+
+/// Takes the estimates of the other windows, and those of the main window that came late.
+void LiveView::other_estimate(const std::string& channel, std::span<const std::uint8_t> payload) {
+  const bool late = channel == estimate_channels_.front() + kLate;
+  const auto at = std::find(estimate_channels_.begin() + 1, estimate_channels_.end(), channel);
+  if (!late && at == estimate_channels_.end()) return;
+  const auto found = drivers::decoded<window_estimate_t>(payload);
+  if (!found) return;
+  if (!late) return estimate(static_cast<int>(at - estimate_channels_.begin()), *found);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  late_rows_ = history_.late(*found) || late_rows_;
+}
+
+void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
+  if (!watch_) return;
+  bool renew = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::swap(renew, renew_);
+  }
+  if (renew) watch_->renew();
+  for (const event_t& e : watch_->observe(window, estimate))
+    if (!config_.watch)  // else the estimator publishes its own
+      publish_(e.time_us, config_.lcm.prefix + "EVENT", drivers::encoded(e));
+}
+
+std::vector<double> LiveView::baseline() const {
+  if (latest_.watch && latest_.watch->baseline.size() == parameters_.size())
+    return latest_.watch->baseline;
+  return watch_ && !config_.watch ? watch_->baseline() : std::vector<double>{};
+}
+
+bool LiveView::watched(std::size_t parameter) const {
+  if (latest_.watch && parameter < latest_.watch->watched.size())
+    return latest_.watch->watched[parameter] != 0;
+  return watch_ && watch_->watched(parameter);
 }
 
 void LiveView::instant(const estimator::SampleSet& set) {
@@ -204,8 +263,7 @@ Known LiveView::known() const {
   return out;
 }
 
-/// An event that a viewer who joins later gets at once, if it differs from the one before. The
-/// caller holds the mutex.
+/// Does as keep() if the event differs from the previous one. The caller holds the mutex.
 void LiveView::push_if_new(const std::string& name, const std::string& json) {
   if (json != kept_[name]) ring_.push(name, json);
   kept_[name] = json;

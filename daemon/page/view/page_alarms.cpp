@@ -27,7 +27,7 @@ std::string PageAlarms::put(const event_t& e) {
   events_[e.id] = e;
   if (e.state == event_state::cleared) acknowledged_here_.erase(e.id);
   if (events_.size() > kMax) {
-    // A raised one would be brought back by the next service_t.
+    // The next service_t would bring a raised event back.
     auto gone = std::find_if(events_.begin(), events_.end(), [](const auto& known) {
       return known.second.state == event_state::cleared;
     });
@@ -75,13 +75,13 @@ std::vector<std::string> PageAlarms::acknowledged(acknowledged_t news) {
   return out;
 }
 
-/// Everything was acknowledged since the last message: the page's own events that are raised.
+/// Returns the raised events of the page if all events were acknowledged since the last message.
 std::set<std::int64_t> PageAlarms::acknowledge_own(const acknowledged_t& news) {
   const auto all = std::find(news.id.begin(), news.id.end(), kAllEvents);
   if (all == news.id.end()) return {};
   const auto at = static_cast<std::size_t>(all - news.id.begin());
   const std::int64_t before_us = std::exchange(all_acknowledged_us_, news.since_us[at]);
-  // Of the first message nobody knows whether the page's events were there then.
+  // The first message may be older than the page's events.
   if (!acknowledged_ || before_us == news.since_us[at]) return {};
   for (const std::int64_t id : own_)
     if (events_.at(id).state != event_state::cleared)

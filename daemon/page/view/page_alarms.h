@@ -17,41 +17,40 @@
 
 namespace framewatch::daemon {
 
-/// The events that the page lists, and who acknowledged them. What changes comes back as JSON for
-/// the viewers. `framewatch run` says every second which of its events are raised: the page shows
-/// those and no others.
+/// Holds the events that the page lists and who acknowledged them. Every function that changes
+/// events returns them as JSON for the viewers. `framewatch run` reports its raised events every
+/// second; the page shows exactly those, and the events that it found itself.
 class PageAlarms {
  public:
-  static constexpr std::size_t kMax = 1000;  ///< beyond, a cleared one is forgotten
+  static constexpr std::size_t kMax = 1000;  ///< events; above it cleared ones are forgotten
 
-  /// Events that were stored before the page's server began, in order of time. Those that are
-  /// raised are so until `framewatch run` says which still are.
+  /// Loads stored events in order of time. Raised ones stay raised until still_raised().
   void restore(const std::vector<event_t>& events);
-  /// News of an event that `framewatch run` found.
+  /// Adds or updates an event that `framewatch run` found.
   std::string note(const event_t& event);
-  /// News of an event that the page found.
+  /// Adds or updates an event that the page found.
   std::string note_own(const event_t& event);
-  /// Takes over the report of `framewatch run`: adds the events that it has and the page has not,
-  /// and ends those that it no longer has, because it was started anew without them or because the
-  /// message of their end was lost. Events of the page stay.
+  /// Adds the raised events of `framewatch run` that the page lacks and clears the events that
+  /// `framewatch run` no longer has, as after a restart or a lost message. Keeps the page's own
+  /// events.
   std::vector<std::string> still_raised(const service_t& service);
-  /// What `framewatch run` says is acknowledged; the events whose acknowledgement changed. When
-  /// everything was acknowledged at once, that is true of the page's own events, too.
+  /// Takes the acknowledgements of `framewatch run` and returns the events whose acknowledgement
+  /// changed. When all events were acknowledged at once, the page's own events are included.
   std::vector<std::string> acknowledged(acknowledged_t news);
-  /// An event that only the page knows is acknowledged.
+  /// Acknowledges an event that only the page knows.
   std::string acknowledge(std::int64_t id);
 
-  /// Null when there is no such event.
+  /// Returns nullptr when the event does not exist.
   const event_t* find(std::int64_t id) const;
-  /// Whether `framewatch run` keeps acknowledgements.
+  /// Returns true when `framewatch run` keeps acknowledgements.
   bool kept_elsewhere() const { return acknowledged_.has_value(); }
-  /// Every event.
+  /// Returns every event as JSON.
   std::vector<std::string> all() const;
-  /// What is raised and not cleared, by severity and then by age.
+  /// Returns the raised events, sorted by severity and then by age.
   std::vector<Finding> findings(const Config& config) const;
 
  private:
-  /// Empty: nobody acknowledged it.
+  /// Returns nullopt when the event is not acknowledged.
   std::optional<Acknowledgement> acknowledgement(const event_t& event) const;
   std::string json(const event_t& event) const;
   std::string put(const event_t& event);

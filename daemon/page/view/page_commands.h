@@ -12,29 +12,29 @@
 
 namespace framewatch::daemon {
 
-/// A command of a viewer of the page.
+/// A command that a viewer of the page gives.
 struct PageCommand {
   std::string service;  ///< "run" or "record"
   CommandPacket packet;
   std::int64_t id = 0;  ///< of the request
 };
 
-/// Gives the commands of the page's viewers to their daemons, one after the other, in a thread of
-/// its own: a daemon that does not answer delays nothing but commands.
+/// Sends the commands of viewers to the daemons, one at a time, in a separate thread, so that a
+/// daemon that does not answer delays nothing but commands.
 class PageCommands {
  public:
-  static constexpr std::size_t kMax = 16;  ///< that wait
+  static constexpr std::size_t kMax = 16;  ///< waiting commands
 
   using Give = std::function<CommandAnswer(const std::string& service, const CommandPacket&)>;
-  /// Called in that thread with the problem, when no daemon took the command.
+  /// Called in that thread when the command failed.
   using Failed = std::function<void(const PageCommand&, const std::string& problem)>;
 
   PageCommands(Give give, Failed failed);
-  ~PageCommands();  ///< waits for the one that is being given
+  ~PageCommands();  ///< waits for the command that is being sent
   PageCommands(const PageCommands&) = delete;
   PageCommands& operator=(const PageCommands&) = delete;
 
-  /// False when too many wait.
+  /// Queues a command. Returns false when kMax commands wait.
   bool add(PageCommand command);
 
  private:

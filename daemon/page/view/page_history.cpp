@@ -10,6 +10,38 @@
 
 namespace framewatch::daemon {
 
+estimator::SampleSet with_every_floor(estimator::SampleSet set, const estimator::Structure& s,
+                                      const estimator::StoryResponse& response) {
+  for (int floor = 0; floor <= s.stories; ++floor)
+    for (int f = 0; f < s.frames(); ++f) set.accel.push_back(response.floor_accel_mps2(floor, f));
+  return set;
+}
+
+MotionRows::MotionRows(double rate_hz)
+    : stride_(std::max(1, static_cast<int>(std::ceil(rate_hz / kMaxRate_hz)))) {}
+
+void MotionRows::push(const estimator::SampleSet& instant) {
+  if (instant.index % stride_ != 0) return;
+  if (count_ == kMaxRows) {
+    ++left_out_;
+    return;
+  }
+  const std::int64_t time_us = to_microseconds(instant.time);
+  if (count_ == 0) first_us_ = time_us;
+  rows_ += fmt::format("{}[{},{}]", count_ == 0 ? "" : ",", time_us - first_us_,
+                       json_list(instant.accel, "{:.5g}"));
+  ++count_;
+}
+
+std::string MotionRows::take() {
+  if (count_ == 0) return {};
+  std::string out =
+      fmt::format(R"({{"first_us":{},"rows":[{}],"left_out":{}}})", first_us_, rows_, left_out_);
+  count_ = 0;
+  rows_.clear();
+  return out;
+}
+
 using estimator::kNaN;
 
 PageHistory::PageHistory(const estimator::PipelineConfig& config) : config_(config) {}
@@ -94,7 +126,7 @@ void PageHistory::keep_last(const window_estimate_t& e) {
   last_.boxplot_windows = e.boxplot_windows;
   last_.boxplots = e.boxplots;
   for (std::size_t p = 0; p < n; ++p) {
-    if (!now_[p] || e.boxplot_count[p] == 0) continue;  // a box that runs empty says less and less
+    if (!now_[p] || e.boxplot_count[p] == 0) continue;  // keeps the last full box
     last_.q1[p] = e.q1[p];
     last_.median[p] = e.median[p];
     last_.q3[p] = e.q3[p];

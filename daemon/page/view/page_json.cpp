@@ -8,8 +8,21 @@
 
 #include "daemon/base/json_values.h"
 #include "daemon/monitor/estimates/estimate_table.h"
+#include "estimator/numeric/nan.h"
+#include "estimator/structure/group_design.h"
+#include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
+namespace {
+
+Json line_json(const AnswerLine& line) {
+  return {{"text", line.text},
+          {"since_us", line.since_us},
+          {"until_us", line.until_us},
+          {"report", line.report}};
+}
+
+}  // namespace
 
 std::string estimate_json(const window_estimate_t& e, double min_snr) {
   std::vector<int> reason(e.reason.begin(), e.reason.end());
@@ -98,7 +111,7 @@ std::string session_status_json(const session_status_t& s) {
                         {"saturated", s.saturated[i]},
                         {"polarity", s.polarity[i]},
                         {"problem", s.problem[i]}});
-  // Ids are beyond what JavaScript counts exactly.
+  // Ids exceed the integers that JavaScript represents exactly.
   return json_line({{"time_us", s.time_us},
                     {"state", s.state},
                     {"test", s.test},
@@ -138,6 +151,88 @@ std::string alarm_json(const event_t& e, bool acknowledged, const Acknowledgemen
                     {"acknowledged", acknowledged},
                     {"who", by.who},
                     {"comment", by.comment}});
+}
+
+std::string building_json(const Config& config, double rate_hz) {
+  const estimator::Structure& s = config.pipeline.structure;
+  const estimator::ParameterTable table = config.pipeline.parameters();
+  Json parameters = Json::array();
+  const Eigen::VectorXd design =
+      table.grouped() && config.pipeline.design.size() > 0
+          ? group_parameters(s, table, {config.pipeline.design, config.pipeline.bending_nmprad})
+          : config.pipeline.design;
+  for (int p = 0; p < table.size(); ++p)
+    parameters.push_back({{"name", table[p].name},
+                          {"unit", table[p].unit},
+                          {"kind", static_cast<int>(table[p].kind)},
+                          {"story", table[p].story},
+                          {"last_story", table[p].last_story},
+                          {"frames", table[p].frames},
+                          {"direction", letter(table[p].direction)},
+                          {"frame", table[p].frame},
+                          {"panel", table[p].panel},
+                          {"design", design.size() > p ? Json(design[p]) : Json(nullptr)}});
+  Json axes = Json::array();
+  for (const estimator::SensorAxis& a : config.pipeline.axes) {
+    axes.push_back(
+        {{"name", a.name}, {"story", a.story}, {"direction", letter(a)}, {"frame", a.frame}});
+    if (a.plan) axes.back().update({{"x_m", a.plan->x_m}, {"y_m", a.plan->y_m}});
+  }
+  const estimator::EstimatorOptions& o = config.pipeline.options;
+  return json_line({{"name", s.name},
+                    {"stories", s.stories},
+                    {"frames_x", s.frames_x},
+                    {"frames_y", s.frames_y},
+                    {"span_x_m", s.span_x},
+                    {"span_y_m", s.span_y},
+                    {"story_height_m", s.story_height},
+                    {"rigid", s.floor == estimator::FloorModel::rigid},
+                    {"grouped", table.grouped()},
+                    {"parameters", parameters},
+                    {"axes", axes},
+                    {"rate_hz", rate_hz},
+                    {"window_s", o.window_s},
+                    {"high_pass_hz", o.high_pass_hz},
+                    {"watch", config.watch.has_value()},
+                    {"version", FRAMEWATCH_VERSION},
+                    {"config_sha256", config.sha256}});
+}
+
+std::string answers_json(const Known& known, const Config& config) {
+  constexpr const char* kStates[] = {"good", "look", "bad", "wait"};
+  constexpr const char* kKinds[] = {"change", "shake", "belief", "service"};
+  Json questions = Json::array(), findings = Json::array(), drift = Json::array();
+  for (const Answer& a : answers(known, config)) {
+    Json more = Json::array();
+    for (const AnswerLine& line : a.more) more.push_back(line_json(line));
+    questions.push_back({{"question", a.question},
+                         {"state", kStates[static_cast<int>(a.state)]},
+                         {"line", line_json(a.line)},
+                         {"more", more}});
+  }
+  for (const Finding& f : known.findings)
+    findings.push_back({{"id", f.id},
+                        {"kind", kKinds[static_cast<int>(f.kind)]},
+                        {"severity", f.severity},
+                        {"place", f.place},
+                        {"since_us", f.since_us},
+                        {"ratio", json_value(f.change_ratio)},
+                        {"error", json_value(f.std_error)},
+                        {"of_channel", f.of_channel},
+                        {"text", f.text},
+                        {"advice", f.advice},
+                        {"acknowledged", f.acknowledged},
+                        {"who", f.who}});
+  const estimator::Structure& s = config.pipeline.structure;
+  for (int story = 1; known.newest != nullptr && story <= s.stories; ++story) {
+    const estimator::PeakDrift peak = peak_drift(known.newest->peak, s, story);
+    const auto i = static_cast<std::size_t>(story - 1);
+    drift.push_back({{"ratio", json_value(peak.ratio)},
+                     {"frame", peak.frame},
+                     {"std_error", json_value(i < known.drifts.size() ? known.drifts[i].std_error
+                                                                      : estimator::kNaN)}});
+  }
+  return json_line({{"answers", questions}, {"findings", findings}, {"drift", drift}});
 }
 
 }  // namespace framewatch::daemon

@@ -16,26 +16,26 @@
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/page/findings/answers.h"
 
-// Messages as the JSON that the page gets by server-sent events (docs/dashboard.md), one line each.
-// Values that are not finite are null.
+// Format messages as the JSON of the page's server-sent events (docs/dashboard.md), one line each.
+// Values that are not finite become null.
 namespace framewatch::daemon {
 
 std::string estimate_json(const window_estimate_t& estimate, double min_snr);
 std::string model_fit_json(const model_fit_t& fit);
 std::string boxes_json(const window_estimate_t& estimate);
 std::string baseline_json(const std::vector<double>& baseline);
-/// config_sha256: of the page, to say whether the estimator runs with the same one.
+/// config_sha256: digest of the page's configuration, for "same_config".
 std::string status_json(const status_t& status, const std::string& config_sha256);
 std::string gap_json(const gap_t& gap);
 std::string can_json(const can_status_t& status);
 std::string session_status_json(const session_status_t& status);
-/// The four answers, every open finding, and the drift ratios of the newest shake by story.
+/// Formats the four answers, every open finding and the drift ratios of the newest shake by story.
 std::string answers_json(const Known& known, const Config& config);
-/// Why a command of the page was not obeyed. id: of the request.
+/// Formats the reason why a daemon refused the command of the request `id`.
 std::string refused_json(std::int64_t id, const std::string& problem);
-/// acknowledged: whether the event is; by whom and with which comment, where that is known.
+/// by: who acknowledged the event and with which comment; empty where unknown.
 std::string alarm_json(const event_t& event, bool acknowledged, const Acknowledgement& by);
-/// The building, its axes and parameters. rate_hz: of the rows of motion.
+/// Formats the building, its axes and parameters. rate_hz: rate of the rows of motion.
 std::string building_json(const Config& config, double rate_hz);
 
 }  // namespace framewatch::daemon

@@ -19,7 +19,7 @@ estimator::Watch fresh_watch(const estimator::ParameterTable& table,
   options.least_change_k = PageWatch::kSmallestFrame_ratio;
   options.least_change_g = PageWatch::kSmallestPanel_ratio;
   options.quiet_window_s = 0;
-  options.amplitude = false;  // messages do not have it
+  options.amplitude = false;  // messages lack the amplitude
   return {table, options, windows_s, std::nullopt};
 }
 

@@ -12,31 +12,31 @@
 
 namespace framewatch::daemon {
 
-/// Theta order. Estimates of parameters with other names are not watched.
+/// Returns the names of the parameters in theta order.
 std::vector<std::string> parameter_names(const Config& config);
-/// What Watch and the motion of floors without sensors read of an estimate.
+/// Converts the fields of an estimate that estimator::Watch and estimator::StoryResponse read.
 estimator::WindowEstimate decoded_estimate(int window, const window_estimate_t& message);
 
-/// Watches the stiffnesses of published estimates for changes where nobody else does: without
-/// [watch] in the configuration. The test is the estimator's (estimator::Watch), in the main and
-/// the other windows at once, against a baseline that it learns from the first kBaseline_s of
-/// separate windows. Sensor time only.
+/// Watches the stiffnesses of published estimates for changes when the configuration lacks [watch].
+/// Runs estimator::Watch on the main and the other windows, against a baseline learned from the
+/// first kBaseline_s of separate windows. Uses sensor time only.
 class PageWatch {
  public:
   static constexpr double kBaseline_s = 8;
   static constexpr double kSmallestFrame_ratio = 0.05, kSmallestPanel_ratio = 0.2;
 
-  /// first_id: of the events.
+  /// first_id: id of the first event.
   PageWatch(const Config& config, std::int64_t first_id);
 
-  /// Events that this estimate gives reason for. window: as WindowEstimate::window, not the long
-  /// one.
+  /// Returns the events that this estimate raises, changes or clears. window: as
+  /// WindowEstimate::window, but not the long one.
   std::vector<event_t> observe(int window, const window_estimate_t& estimate);
-  /// Learns the baseline anew. Clears no event.
+  /// Learns the baseline anew. Does not clear events.
   void renew();
-  /// Theta order, SI; NaN for parameters that are not watched and while it is not known.
+  /// Returns the baseline in theta order, SI units; NaN for parameters that are not watched and
+  /// before it is learned.
   std::vector<double> baseline() const;
-  /// Whether changes of the parameter are looked for.
+  /// Returns true when the parameter is watched for changes.
   bool watched(std::size_t parameter) const {
     return parameter < static_cast<std::size_t>(watch_.parameters()) && watch_.watched(parameter);
   }

@@ -20,7 +20,7 @@ using estimator::kNaN;
 constexpr std::int32_t kObservable = 0, kQuiet = 2;  // window_estimate_t::reason
 constexpr std::int64_t kEver_us = 2'000'000'000'000'000'000;
 
-/// Nothing is shown in it yet.
+/// Returns an estimate without any value.
 window_estimate_t empty_estimate(std::size_t parameters, std::int64_t end_us) {
   window_estimate_t e{};
   e.window_end_us = end_us;
@@ -88,7 +88,7 @@ void read_samples(const Config& config, std::int64_t newest_us, StoredHistory& o
   const double rate_hz = config.pipeline.options.rate_hz * static_cast<double>(axes.size());
   const double most_s = std::min(PageHistory::kMost_s, StoredHistory::kMaxSamples / rate_hz);
   const std::int64_t from_us = newest_us - static_cast<std::int64_t>(1e6 * most_s);
-  std::vector<int> axis_of;  // by the log's channel; -1: of another configuration
+  std::vector<int> axis_of;  // by the log's channel; -1: not in this configuration
   const RawVisitor visitor{
       [&](const std::vector<std::string>& names, double) {
         axis_of.assign(names.size(), -1);

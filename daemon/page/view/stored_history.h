@@ -12,20 +12,20 @@
 
 namespace framewatch::daemon {
 
-/// What `framewatch run` has stored ([history]) of what the page shows, for a page whose server was
-/// started anew.
+/// The part of the history ([history]) that a page shows after its server restarts.
 struct StoredHistory {
   static constexpr std::size_t kMaxEvents = 200;
-  static constexpr std::size_t kMaxSamples = 2'000'000;  ///< of many sensors fewer minutes
+  static constexpr std::size_t kMaxSamples = 2'000'000;  ///< with many sensors: fewer minutes
 
-  /// Of every period of the last minutes, and of older ones that have the newest value of a
-  /// parameter: its means as the estimate of a window that ends with it, in order of time.
+  /// One estimate for each period of the last minutes and each older period that has the newest
+  /// value of a parameter: its means, as a window that ends with it. In order of time.
   std::vector<window_estimate_t> estimates;
   std::vector<event_t> events;                  ///< in order of time
-  std::vector<estimator::AccelSample> samples;  ///< of the last minutes, before calibration
+  std::vector<estimator::AccelSample> samples;  ///< last minutes, before calibration
 };
 
-/// Of a configuration with [history]. What cannot be read is left out, and said in `notes`.
+/// Reads the history of a configuration with [history]. Leaves out what cannot be read and adds the
+/// reason to `notes`.
 StoredHistory stored_history(const Config& config, std::vector<std::string>& notes);
 
 }  // namespace framewatch::daemon

@@ -29,14 +29,14 @@ using Clock = std::chrono::steady_clock;
 constexpr int kPoll_ms = 10;
 constexpr std::chrono::milliseconds kFlush{50};
 
-/// The first line of the token file.
+/// Returns the first line of the token file. Returns nullopt and sets `error` if it is unreadable.
 std::optional<std::string> read_token(const std::string& path, std::string& error) {
   auto text = read_text_file(path, error);
   if (text) text->resize(std::min(text->size(), text->find_first_of("\r\n")));
   return text;
 }
 
-/// Empty when they are wrong, which is printed.
+/// Returns the settings; prints the problems and returns nullopt when they are wrong.
 std::optional<WebSettings> web_settings(const ServeArguments& a) {
   bool good = true;
   WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions, {}, {}, {}};
@@ -56,7 +56,7 @@ std::optional<WebSettings> web_settings(const ServeArguments& a) {
     good = false;
   }
   if (!good) return std::nullopt;
-  // At home nobody need choose one, and acknowledging still takes it.
+  // Acknowledging needs a token even when the operator has not chosen one.
   if (settings.token.empty()) settings.token = random_token();
   return settings;
 }
@@ -103,7 +103,7 @@ int serve(const ServeArguments& a) {
   if (config->history) {
     std::vector<std::string> notes;
     view.restore(stored_history(*config, notes), host_clock_us());
-    for (const std::string& note : notes) log(LogLevel::notice, "of what was before: " + note);
+    for (const std::string& note : notes) log(LogLevel::notice, "history:  " + note);
   }
   WebServer server(*settings, view);
   const int socket = listen_on(settings->address, settings->port, error);
@@ -111,7 +111,7 @@ int serve(const ServeArguments& a) {
     fmt::print(stderr, "framewatch serve: {}\n", error);
     return kBadInput;
   }
-  // A token of one's own does not go into logs.
+  // The operator's token must not go into logs.
   fmt::print("{}\n", page_address(*settings, server.port(),
                                   a.token_file.empty() ? settings->token : std::string()));
   std::fflush(stdout);

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kShortestToken = 16;
 constexpr std::string_view kVerbs[] = {"/acknowledge", "/baseline", "/session"};
 
-/// Without its port: "[::1]:8080" is "::1".
+/// Removes the port and brackets: "[::1]:8080" becomes "::1".
 std::string host_name(const std::string& host) {
   if (host.starts_with('[')) {
     const std::size_t end = host.find(']');
@@ -30,12 +30,12 @@ std::vector<std::string> problems(const WebSettings& s) {
   std::vector<std::string> out;
   if (!s.local() && s.token.empty())
     out.push_back(s.address +
-                  ": others can reach this address, so a token is needed (--token-file)");
+                  ": other machines can reach this address: set a token with --token-file");
   if (!s.token.empty() && s.token.size() < kShortestToken)
-    out.push_back("the token has fewer than 16 characters");
+    out.push_back("the token must have at least 16 characters");
   if (std::any_of(s.token.begin(), s.token.end(),
                   [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_'; }))
-    out.push_back("the token has other characters than letters, digits, - and _");
+    out.push_back("the token may contain only letters, digits, - and _");
   return out;
 }
 
@@ -76,15 +76,15 @@ Admission admit(const WebSettings& s, const WebRequest& r) {
 Refusal refusal_of(Admission admission) {
   switch (admission) {
     case Admission::malformed:
-      return {400, "no path, or several hosts"};
+      return {400, "malformed request: no path, or several Host headers"};
     case Admission::has_body:
-      return {413, "a request has no body here"};
+      return {413, "a request must not have a body"};
     case Admission::wrong_host:
-      return {421, "this name is not served here"};
+      return {421, "this host name is not served: add it with --host"};
     case Admission::wrong_method:
       return {405, "only GET"};
     case Admission::wrong_origin:
-      return {403, "from another page"};
+      return {403, "refused: the request comes from another page"};
     case Admission::no_token:
       return {403, "open the address with its token: /?token=..."};
     case Admission::served:

@@ -7,7 +7,7 @@
 
 #include <utility>
 
-#include "daemon/page/web/connection_guard.h"
+#include "daemon/page/web/web_socket.h"
 
 namespace framewatch::daemon {
 

@@ -39,8 +39,8 @@ WebConnections::Ending WebConnections::end(Connection& c, Why why) {
   return {c.connection, why, c.from.text};
 }
 
-/// The oldest in that state of the address that holds most of them beyond what is kept for it; of
-/// equals not this machine's.
+/// Returns the oldest connection in `state` of the address that holds most of them beyond its
+/// reserve. Prefers other machines among equals.
 WebConnections::Connection* WebConnections::most_dispensable(State state, const Connection& keep) {
   const std::string* busiest = nullptr;
   int most = 0;

@@ -7,37 +7,37 @@
 #include <vector>
 
 #include "daemon/base/clocks.h"
-#include "daemon/page/metrics/page_use.h"
+#include "daemon/page/metrics/metrics.h"
 
 namespace framewatch::daemon {
 
-/// How many connections the page holds, and for how long.
+/// Limits on the number, size and age of the page's connections.
 struct ConnectionLimits {
-  int waiting = 512;    ///< for their request to come whole
-  int answering = 128;  ///< an answer is being read
-  int viewers = 500;    ///< of the stream of events
+  int waiting = 512;    ///< whose request is incomplete
+  int answering = 128;  ///< that read an answer
+  int viewers = 500;    ///< of the event stream
   int viewers_per_address = 250;
-  int kept_local = 32;                        ///< of each of these, for this machine
-  std::size_t answer_bytes = 64 << 20;        ///< of all answers being read
-  std::int64_t request_us = 10 * kSecond_us;  ///< until a request is whole
+  int kept_local = 32;                        ///< reserved for this machine in each state
+  std::size_t answer_bytes = 64 << 20;        ///< in all answers together
+  std::int64_t request_us = 10 * kSecond_us;  ///< until a request is complete
   std::int64_t answer_us = 120 * kSecond_us;  ///< until an answer is read
-  unsigned idle_s = 30;                       ///< without a byte either way
+  unsigned idle_s = 30;                       ///< without a byte in either direction
 
-  /// With those that are ended and not yet closed.
+  /// Returns the most connections that may exist, including ended ones that are not yet closed.
   int connections() const { return waiting + answering + viewers + 64; }
 };
 
-/// Where a connection comes from, as the limits count it.
+/// The origin of a connection, as the limits count it.
 struct PeerAddress {
-  std::string text;    ///< of IPv6 the network of 64 bits, which one machine has
+  std::string text;    ///< for IPv6 the 64-bit network, which belongs to one machine
   bool local = false;  ///< this machine
 };
 
-/// Keeps the books of the page's connections and says which must end, so that those that dawdle
-/// never keep others out: whoever comes finds a place, and the oldest of the address that holds
-/// most gives it up. What this machine holds counts beyond kept_local alone. A viewer of the stream
-/// keeps its place; when all are taken the next one is refused. Knows no socket: connections are
-/// numbers of the caller's, times are of a clock that is never set.
+/// Tracks the page's connections and decides which must end, so that slow clients never keep others
+/// out. A new connection always gets a place: the oldest connection of the address that holds most
+/// ends. Connections of this machine count only beyond kept_local. Viewers of the stream keep their
+/// place; when all places are taken, the next viewer is refused. Connections are numbers chosen by
+/// the caller; times are of a monotonic clock.
 class WebConnections {
  public:
   enum class Why { late_request, late_answer, crowded };
@@ -49,17 +49,17 @@ class WebConnections {
 
   explicit WebConnections(const ConnectionLimits& limits) : limits_(limits) {}
 
-  // What happened. Each returns the connections that must end; they are counted here and forgotten
-  // with closed().
+  // Each function takes an event of a connection and returns the connections that must end. Those
+  // are counted here until closed().
   [[nodiscard]] std::vector<Ending> opened(int connection, PeerAddress from, std::int64_t now_us);
-  /// Its request is whole.
+  /// The request is complete.
   [[nodiscard]] std::vector<Ending> asked(int connection, std::int64_t now_us);
-  /// An answer of so many bytes is held for it.
+  /// An answer of `bytes` waits to be read.
   [[nodiscard]] std::vector<Ending> answered(int connection, std::size_t bytes);
   [[nodiscard]] std::vector<Ending> overdue(std::int64_t now_us);
   void closed(int connection);
 
-  /// It becomes a viewer. False when there is no place.
+  /// The connection becomes a viewer. Returns false when no place is free.
   [[nodiscard]] bool watches(int connection);
 
   PageUse use() const;
@@ -73,9 +73,9 @@ class WebConnections {
     std::int64_t since_us;
     std::size_t bytes;
   };
-  /// In the order in which they came.
+  /// In the order of opened().
   using Connections = std::map<std::uint64_t, Connection>;
-  /// By state.
+  /// Number of connections in each state.
   struct Held {
     int waiting = 0, answering = 0, watching = 0, ended = 0;
     bool local = false;
@@ -95,8 +95,8 @@ class WebConnections {
   std::map<std::string, Held> held_;  ///< by address
   std::size_t answer_bytes_ = 0;
   Held all_;
-  int viewers_elsewhere_ = 0;  ///< not of this machine
-  PageUse ended_;              ///< its counters alone
+  int viewers_elsewhere_ = 0;  ///< on other machines
+  PageUse ended_;              ///< only the counters are used
 };
 
 }  // namespace framewatch::daemon

@@ -9,7 +9,7 @@ struct WebFile {
   std::string type;
   std::string content;
 };
-/// The files of the built-in page, by path.
+/// Returns the files of the built-in page by path.
 const std::map<std::string, WebFile>& page_files();
 
 }  // namespace framewatch::daemon

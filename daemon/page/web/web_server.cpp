@@ -16,10 +16,8 @@
 
 #include "daemon/base/served_file.h"
 #include "daemon/page/view/live_view.h"
-#include "daemon/page/web/connection_guard.h"
 #include "daemon/page/web/web_admission.h"
 #include "daemon/page/web/web_answer.h"
-#include "daemon/page/web/web_event_reports.h"
 #include "daemon/page/web/web_files.h"
 #include "daemon/page/web/web_sessions.h"
 #include "daemon/page/web/web_socket.h"
@@ -73,7 +71,7 @@ class WebServer::Implementation {
                                  static_cast<unsigned>(most), MHD_OPTION_CONNECTION_TIMEOUT,
                                  settings_.connections.idle_s, MHD_OPTION_NOTIFY_CONNECTION,
                                  &Implementation::notify, this, MHD_OPTION_END);
-      if (!daemon_) error = "libmicrohttpd cannot start";
+      if (!daemon_) error = "cannot start libmicrohttpd";
     }
     if (!daemon_) {
       ::close(socket);
@@ -109,7 +107,7 @@ class WebServer::Implementation {
       guard.closed(socket_of(c));
   }
 
-  /// Called when the head of a request is whole; what a body holds is never waited for.
+  /// Handles a request when its head is complete. Never waits for a body.
   static MHD_Result handle(void* of, MHD_Connection* c, const char* url, const char* method,
                            const char*, const char*, std::size_t*, void**) {
     auto& self = *static_cast<Implementation*>(of);
@@ -165,8 +163,8 @@ class WebServer::Implementation {
     if (path == "/baseline") {
       if (!view_.renew_baseline())
         return plain(c, MHD_HTTP_CONFLICT,
-                     "the baseline is that of framewatch run: [watch] of its configuration");
-      return plain(c, MHD_HTTP_OK, "the next seconds are the new baseline");
+                     "framewatch run keeps the baseline, because the configuration has [watch]");
+      return plain(c, MHD_HTTP_OK, "the baseline is learned anew from the next seconds");
     }
     if (path == "/session") return tell_recorder(c);
     const std::string text = header(c, "id", MHD_GET_ARGUMENT_KIND);
@@ -180,7 +178,8 @@ class WebServer::Implementation {
                        : plain(c, MHD_HTTP_ACCEPTED, std::to_string(*asked));
   }
 
-  /// Answers with the id of the command; the recorder's answer with that id comes as an event.
+  /// Answers with the id of the command. The recorder's answer comes later as an event with that
+  /// id.
   MHD_Result tell_recorder(MHD_Connection* c) {
     const auto text = [c](const char* name) { return header(c, name, MHD_GET_ARGUMENT_KIND); };
     SessionRequest request{text("test"), text("operator"), text("notes")};
@@ -191,22 +190,22 @@ class WebServer::Implementation {
       const char* const end = given.data() + given.size();
       const auto [parsed, error] = std::from_chars(given.data(), end, *value);
       if (!given.empty() && (error != std::errc() || parsed != end))
-        return plain(c, MHD_HTTP_BAD_REQUEST, std::string(name) + ": is no number");
+        return plain(c, MHD_HTTP_BAD_REQUEST, std::string(name) + ": is not a number");
     }
     for (const std::string& problem : problems(request))
       return plain(c, MHD_HTTP_BAD_REQUEST, problem);
     const session_command_t command = session_command(text("verb"), request);
     if (!view_.tell_recorder(command))
-      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many commands at once");
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE,
+                   "too many commands are waiting: try again later");
     return plain(c, MHD_HTTP_ACCEPTED, std::to_string(command.id));
   }
 
-  /// Replaces the token in the address by a cookie that scripts cannot read.
+  /// Replaces the token in the address with a cookie that scripts cannot read.
   MHD_Result exchange(MHD_Connection* c, const std::string& token) {
     MHD_Response* response = MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
     if (!response) return MHD_NO;
     MHD_add_response_header(response, "Location", "/");
-    // A server without a token needs no cookie.
     if (!settings_.token.empty() && token == settings_.token)
       MHD_add_response_header(
           response, "Set-Cookie",
@@ -224,12 +223,12 @@ class WebServer::Implementation {
 
   MHD_Result stream(MHD_Connection* c) {
     if (!guard_.watches(socket_of(c)))
-      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many viewers");
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many viewers: try again later");
     auto viewer = std::make_unique<Viewer>(Viewer{this, c, view_.join()});
     MHD_Response* response = MHD_create_response_from_callback(
         MHD_SIZE_UNKNOWN, kBlock, &Implementation::read, viewer.get(), &Implementation::leave);
     if (!response) return MHD_NO;
-    (void)viewer.release();  // leave() has it now
+    (void)viewer.release();  // leave() owns it now
     MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
     return send_answer(c, MHD_HTTP_OK, response);
   }
@@ -259,7 +258,7 @@ class WebServer::Implementation {
   MHD_Daemon* daemon_ = nullptr;
   int port_ = 0;
   std::mutex mutex_;
-  std::set<MHD_Connection*> waiting_;  ///< suspended, because they have read everything
+  std::set<MHD_Connection*> waiting_;  ///< suspended until new events come
   std::atomic<bool> stopping_ = false;
 };
 

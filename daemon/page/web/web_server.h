@@ -3,15 +3,15 @@
 #include <memory>
 #include <string>
 
-#include "daemon/page/web/web_settings.h"
+#include "daemon/page/web/web_admission.h"
 
 namespace framewatch::daemon {
 
 class LiveView;
 
-/// Serves the page, the building and the stream of events (docs/dashboard.md) on a thread of its
-/// own, to as many at once as WebSettings::connections says. A viewer that does not read costs one
-/// socket and one event of memory until it is ended.
+/// Serves the page, the building and the event stream (docs/dashboard.md) in a separate thread,
+/// within WebSettings::connections. A viewer that does not read costs one socket and the memory of
+/// one event.
 class WebServer {
  public:
   /// `view` must outlive this.
@@ -20,12 +20,13 @@ class WebServer {
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  /// Serves on `socket` (of listen_on()) and takes it over. False, with the reason, on failure.
+  /// Serves on `socket` (from listen_on()) and takes ownership of it. Returns false and sets
+  /// `error` on failure.
   [[nodiscard]] bool start(int socket, std::string& error);
   int port() const;
   int viewers() const;
-  /// New events have come: waiting viewers continue, and what is overdue is ended. To be called at
-  /// least once a second.
+  /// Wakes waiting viewers for new events and ends overdue connections. Call it at least once a
+  /// second.
   void wake();
 
  private:

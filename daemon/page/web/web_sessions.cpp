@@ -11,6 +11,7 @@
 
 #include "daemon/base/json_values.h"
 #include "daemon/base/served_file.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/tools/report/session_file.h"
 #include "daemon/tools/session/session_log.h"
 
@@ -20,12 +21,14 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kMaxShown = 200;
 
-/// As session_folder_name() makes them: nothing that leads elsewhere.
+/// Returns true for names that session_folder_name() makes, which cannot lead out of the folder.
 bool is_session_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_';
   });
 }
+
+constexpr std::size_t kMaxReports = 50;
 
 }  // namespace
 
@@ -68,6 +71,31 @@ std::optional<WebFile> session_document(const std::string& folder, const std::st
   if (!text) return std::nullopt;
   return WebFile{file == kReportPage ? "text/html; charset=utf-8" : "application/json",
                  std::move(*text)};
+}
+
+std::string event_reports_json(const std::string& folder) {
+  const std::vector<std::string> names = event_report_names(folder);
+  Json out = Json::array();
+  for (auto name = names.rbegin(); name != names.rend() && out.size() < kMaxReports; ++name)
+    if (const auto s = event_report_summary(folder, *name))
+      out.push_back({{"name", s->name},
+                     {"verdict", color_word(s->color)},
+                     {"reason", s->reason},
+                     {"placard", s->placard},
+                     {"start_us", s->start_us},
+                     {"end_us", s->end_us}});
+  return json_line(out);
+}
+
+std::optional<WebFile> event_report_document(const std::string& folder, const std::string& path) {
+  const std::size_t dot = path.find('.');
+  const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
+  const bool page = ending == ".html";
+  if (folder.empty() || !is_event_report_name(path.substr(0, dot))) return std::nullopt;
+  if (!page && ending != ".json") return std::nullopt;
+  auto text = read_served_file(folder, {path});
+  if (!text) return std::nullopt;
+  return WebFile{page ? "text/html; charset=utf-8" : "application/json", std::move(*text)};
 }
 
 }  // namespace framewatch::daemon

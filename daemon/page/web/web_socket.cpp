@@ -10,14 +10,19 @@
 #include <cstdint>
 #include <cstring>
 #include <random>
+#include <string_view>
+#include <vector>
 
 #include <fmt/core.h>
+
+#include "daemon/base/clocks.h"
+#include "daemon/base/log.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr int kNotAccepted = 1024;
-// Linux takes twice as much, for its own bookkeeping.
+// Linux doubles the value for its own bookkeeping.
 constexpr int kSend_bytes = 128 * 1024, kReceive_bytes = 32 * 1024;
 
 PeerAddress peer_of_ipv4(const in_addr& address) {
@@ -39,6 +44,22 @@ PeerAddress peer_of_ipv6(in6_addr address) {
   return {std::string(text) + "/64", false};
 }
 
+constexpr std::string_view kTooLate =
+    "HTTP/1.1 408 Request Timeout\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
+constexpr std::int64_t kLineEvery_us = 60 * kSecond_us;
+
+/// Shuts the socket down. The web server then sees its end and closes it.
+void end_socket(int socket, WebConnections::Why why) {
+  if (why == WebConnections::Why::late_request) {
+    (void)::send(socket, kTooLate.data(), kTooLate.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  } else {
+    // Data that waits in the kernel is dropped.
+    const linger none{1, 0};
+    ::setsockopt(socket, SOL_SOCKET, SO_LINGER, &none, sizeof none);
+  }
+  ::shutdown(socket, SHUT_RDWR);
+}
+
 }  // namespace
 
 PeerAddress peer_of(int socket) {
@@ -56,8 +77,8 @@ bool allow_descriptors(int count, std::string& error) {
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return true;
   if (limit.rlim_max < wanted) {
     error = fmt::format(
-        "{} files must be open at once (--viewers) and this process may open {}: raise ulimit -n, "
-        "under systemd LimitNOFILE",
+        "--viewers needs {} open files, but this process may open only {}: raise ulimit -n (under "
+        "systemd LimitNOFILE)",
         count, limit.rlim_max);
     return false;
   }
@@ -76,7 +97,7 @@ int listen_on(const std::string& address, int port, std::string& error) {
   const bool six = address.find(':') != std::string::npos;
   void* to = six ? static_cast<void*>(&v6.sin6_addr) : static_cast<void*>(&v4.sin_addr);
   if (::inet_pton(six ? AF_INET6 : AF_INET, address.c_str(), to) != 1) {
-    error = address + ": is no IP address";
+    error = address + ": is not an IP address";
     return -1;
   }
   const int socket = ::socket(six ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -104,6 +125,67 @@ std::string random_token() {
   std::string out;
   for (int i = 0; i < 4; ++i) out += fmt::format("{:08x}", source());
   return out;
+}
+
+void ConnectionGuard::end(const std::vector<WebConnections::Ending>& endings) {
+  for (const WebConnections::Ending& e : endings) {
+    end_socket(e.connection, e.why);
+    last_address_ = e.address;
+  }
+}
+
+void ConnectionGuard::opened(int socket) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  end(connections_.opened(socket, peer_of(socket), steady_clock_us()));
+}
+
+void ConnectionGuard::asked(int socket) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  end(connections_.asked(socket, steady_clock_us()));
+}
+
+void ConnectionGuard::answered(int socket, std::size_t bytes) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  end(connections_.answered(socket, bytes));
+}
+
+bool ConnectionGuard::watches(int socket) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return connections_.watches(socket);
+}
+
+void ConnectionGuard::closed(int socket) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  connections_.closed(socket);
+}
+
+void ConnectionGuard::sweep() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::int64_t now_us = steady_clock_us();
+  end(connections_.overdue(now_us));
+  report(now_us);
+}
+
+void ConnectionGuard::report(std::int64_t now_us) {
+  if (now_us < next_line_us_) return;
+  const PageUse use = connections_.use();
+  const auto late = use.late_requests + use.late_answers - told_.late_requests - told_.late_answers;
+  const auto crowded = use.crowded_out - told_.crowded_out;
+  const auto refused = use.viewers_refused - told_.viewers_refused;
+  if (late + crowded + refused == 0) return;
+  next_line_us_ = now_us + kLineEvery_us;
+  told_ = use;
+  std::string line = fmt::format(
+      "the page ended {} connections that were too slow and {} for newer ones, and refused {} "
+      "viewers",
+      late, crowded, refused);
+  if (late + crowded > 0) line += "; the last one came from " + last_address_;
+  log(LogLevel::warning, line);
+}
+
+PageUse ConnectionGuard::use() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return connections_.use();
 }
 
 }  // namespace framewatch::daemon

@@ -1,26 +1,62 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
 #include <string>
 
+#include "daemon/page/metrics/metrics.h"
+#include "daemon/page/web/web_admission.h"
 #include "daemon/page/web/web_connections.h"
-#include "daemon/page/web/web_settings.h"
 
 namespace framewatch::daemon {
 
-/// A socket that listens on the address; -1, with the reason, when that fails. The kernel holds at
-/// most 256 KiB to be sent and 64 KiB received of a connection.
+/// Returns a socket that listens on the address. Returns -1 and sets `error` on failure. The kernel
+/// buffers at most 256 KiB to send and 64 KiB received for each connection.
 int listen_on(const std::string& address, int port, std::string& error);
 
-/// Where a connected socket leads.
+/// Returns the address at the other end of a connected socket.
 PeerAddress peer_of(int socket);
 
-/// Lets the process have so many files open. False, with the reason, when the machine forbids it.
+/// Allows the process to open `count` files. Returns false and sets `error` when the machine
+/// forbids it.
 [[nodiscard]] bool allow_descriptors(int count, std::string& error);
 
-/// "http://127.0.0.1:8080/", with ?token= unless `token` is empty.
+/// Returns "http://127.0.0.1:8080/", with ?token= unless `token` is empty.
 std::string page_address(const WebSettings& settings, int port, const std::string& token);
 
-/// 32 hexadecimal digits from the operating system's random numbers.
+/// Returns 32 random hexadecimal digits from the operating system.
 std::string random_token();
+
+/// Ends the connections that WebConnections selects and logs at most one line a minute. Any thread
+/// may call it with a socket that is open, until closed().
+class ConnectionGuard {
+ public:
+  explicit ConnectionGuard(const ConnectionLimits& limits) : connections_(limits) {}
+
+  void opened(int socket);
+  /// The request is complete.
+  void asked(int socket);
+  /// An answer of `bytes` waits to be read.
+  void answered(int socket, std::size_t bytes);
+  /// The connection becomes a viewer of the event stream. Returns false when no place is free.
+  [[nodiscard]] bool watches(int socket);
+  /// The socket is about to be closed.
+  void closed(int socket);
+  /// Ends overdue connections. Call it at least once a second.
+  void sweep();
+
+  PageUse use() const;
+
+ private:
+  void end(const std::vector<WebConnections::Ending>& endings);
+  void report(std::int64_t now_us);
+
+  mutable std::mutex mutex_;  ///< guards the members below
+  WebConnections connections_;
+  std::string last_address_;
+  PageUse told_;  ///< counters at the last log line
+  std::int64_t next_line_us_ = INT64_MIN;
+};
 
 }  // namespace framewatch::daemon

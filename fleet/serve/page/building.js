@@ -59,7 +59,7 @@ function drawBuilding() {
 function drawFindings(d) {
   const items = d.raised.map(r => el('li', {className: r.severity >= 2 && !r.known ? 'bad' : ''}, el('span', {}, `${r.message || r.kind}`), el('span', {className: 'soft'}, `${r.kind}, since ${when(r.since_us)}${r.known ? ', acknowledged by ' + r.known_to : ''}`),
     me.commands && !r.known ? el('button', {onclick: () => command(d.name, {verb: 'acknowledge', id: r.id})}, 'Acknowledge') : null));
-  seen.findings.replaceChildren(el('h2', {}, 'Findings'), items.length ? el('ul', {id: 'findings'}, items) : el('p', {className: 'soft'}, 'none is raised'));
+  seen.findings.replaceChildren(el('h2', {}, 'Findings'), items.length ? el('ul', {id: 'findings'}, items) : el('p', {className: 'soft'}, 'No findings.'));
 }
 
 function drawValues(d) {
@@ -72,7 +72,7 @@ function drawValues(d) {
     return el('tr', {}, el('td', {}, el('a', {href: `#/building/${d.name}`, onclick: e => { e.preventDefault(); seen.parameter = seen.select.value = p.name; loadSeries(); seen.box.scrollIntoView({block: 'center'}); }}, p.name), el('div', {className: 'soft'}, placeOf(p.name))),
       numbers('', known ? withError(p.median, p.std_error, p.unit) : el('span', {className: 'soft'}, 'not observable')), numbers('', ratio === null ? '' : el('span', {className: far ? 'loss' : ''}, percent(ratio, error))), numbers('', known ? when(p.observed_us) : ''));
   });
-  seen.values.replaceChildren(rows.length ? table(['parameter', '#median', '#from baseline', '#period from'], rows) : el('p', {className: 'soft'}, 'The building has not said what its parameters are.'));
+  seen.values.replaceChildren(rows.length ? table(['parameter', '#median', '#from baseline', '#period from'], rows) : el('p', {className: 'soft'}, 'The building has not sent its parameters yet.'));
 }
 
 function drawChannels(d) {
@@ -83,7 +83,7 @@ function drawChannels(d) {
     fact('running since', when(p.started_us) + (p.unclean_starts ? `, ${p.unclean_starts} unclean starts` : ''));
     fact('memory', bytes(p.resident_bytes));
     fact('disk free', bytes(p.disk_free_bytes));
-    fact('newest sample', p.received_us ? when(p.received_us) : 'none has come');
+    fact('newest sample', p.received_us ? when(p.received_us) : 'none yet');
     fact('reload', p.reload_problem);
     fact('state', p.state_problem);
   }
@@ -92,7 +92,7 @@ function drawChannels(d) {
 }
 
 function drawStretches(d) {
-  const state = s => s.problem ? cell(null, `there is nothing: ${s.problem}`) : s.came < s.pieces ? cell(null, `${s.came} of ${s.pieces} pieces have come`)
+  const state = s => s.problem ? cell(null, `no samples: ${s.problem}`) : s.came < s.pieces ? cell(null, `${s.came} of ${s.pieces} pieces have come`)
     : cell(null, el('a', {href: `raw.mseed?${new URLSearchParams({name: d.name, request: s.request})}`, download: `${d.name}-${s.file}`}, `${d.name}-${s.file}`), `, ${bytes(s.bytes)}`);
   seen.stretches.replaceChildren(d.stretches.length ? table(['newest piece', 'request', 'miniSEED'], d.stretches.map(s => el('tr', {}, cell(null, when(s.newest_us)), cell(null, s.request), state(s)))) : el('p', {className: 'soft'}, 'None was fetched.'));
 }
@@ -102,10 +102,10 @@ function drawEvents(d) {
   seen.events.replaceChildren(d.events.length ? table(['time', 'severity', 'what'], d.events.map(e => el('tr', {}, cell(null, when(e.time_us)), cell(null, urgencyWord(['changed', 'warning', 'alarm'][Math.min(2, Math.max(0, e.severity))]).lastChild.textContent.replace('changed', 'information'), ', ', kStates[e.state] || '?'), cell(null, e.message, el('span', {className: 'soft'}, ` (${e.kind}${e.place ? ', ' + e.place : ''})`))))) : el('p', {className: 'soft'}, 'none'));
 }
 
-// The plot: the newest time that the building has told of, back by the range.
+// The plot: the selected range up to the newest time of the building.
 async function loadSeries() {
   const d = seen.data;
-  if (!d || !seen.parameter) { seen.note.textContent = 'Nothing can be drawn yet.'; return; }
+  if (!d || !seen.parameter) { seen.note.textContent = 'No values yet.'; return; }
   const last = Math.max(d.now_us, ...d.events.slice(0, 1).map(e => e.time_us)), parameter = seen.parameter;
   const s = await ask('series.json', {name: seen.name, parameter, from_us: Math.max(0, last - seen.range * 1e6), to_us: last + 86400e6}).catch(e => ({problem: e.message}));
   if (parameter !== seen.parameter) return;
@@ -120,7 +120,7 @@ function drawSeries() {
   const p = d.parameters.find(q => q.name === seen.parameter) || {}, unit = s.unit || p.unit || '';
   const values = s.median.filter(v => v !== null), e = engineering(values.length ? Math.max(...values) : 1, unit), scaled = list => list.map(v => v === null ? null : v * e.factor);
   const base = p.baseline !== null && Number.isFinite(p.baseline) ? p.baseline * e.factor : null;
-  // A period that is lacking breaks the line.
+  // A missing period breaks the line.
   const step = s.period_s * s.of, t = [], columns = [[], [], []], from = [s.median, s.q1, s.q3].map(scaled);
   s.t_us.forEach((us, i) => {
     if (i > 0 && (us - s.t_us[i - 1]) / 1e6 > 2.5 * step) { t.push(s.t_us[i - 1] / 1e6 + step); columns.forEach(c => c.push(null)); }
@@ -128,7 +128,7 @@ function drawSeries() {
     columns.forEach((c, k) => c.push(from[k][i]));
   });
   const observed = s.median.filter(v => v !== null).length;
-  seen.note.textContent = s.t_us.length === 0 ? 'Nothing of this time is in the database.'
+  seen.note.textContent = s.t_us.length === 0 ? 'The database has no values for this time.'
     : `${seen.parameter}: ${placeOf(seen.parameter)}. Line: median of ${span(step)}; band: quartiles${s.of > 1 ? ', the widest of ' + s.of + ' periods' : ''}; ${base === null ? 'the baseline is not known' : 'dashed: the baseline now'}. Vertical: events of severity warning (amber) and alarm (red). ` + (observed < s.t_us.length ? `Not observable in ${s.t_us.length - observed} of ${s.t_us.length} points.` : '');
   if (!s.t_us.length) return;
   const style = theme(), axis = {stroke: style.soft, grid: {stroke: style.rule, width: 1}, ticks: {stroke: style.rule}, font: '12px system-ui'};
@@ -153,7 +153,7 @@ function drawSeries() {
   seen.box.replaceChildren(seen.plot.root);
   seen.box.setAttribute('aria-label', `${seen.parameter} over time. ${seen.note.textContent}`);
 }
-// A value between two that are lacking has no line.
+// Marks a value between two missing ones, which has no line.
 function alone(plot, series) {
   const v = plot.data[series], out = [];
   for (let i = 0; i < v.length; ++i) if (v[i] !== null && (i === 0 || v[i - 1] === null) && (i + 1 === v.length || v[i + 1] === null)) out.push(i);
@@ -161,22 +161,22 @@ function alone(plot, series) {
 }
 
 function drawCommands() {
-  if (!me.commands) { seen.commands.replaceChildren(el('p', {className: 'soft'}, me.hub ? 'Operators give commands; you may look.' : 'This page was begun without a hub: it gives no commands.')); return; }
+  if (!me.commands) { seen.commands.replaceChildren(el('p', {className: 'soft'}, me.hub ? 'Only operators may give commands.' : 'This page runs without a hub and cannot give commands.')); return; }
   const now = Date.now() * 1e3, from = timeInput('c-from', now - 3600e6), to = timeInput('c-to', now), channels = el('input', {id: 'c-channels', placeholder: 'all', size: 16});
   const give = (verb, more = () => ({})) => () => command(seen.name, {verb, ...more()});
   const range = () => ({from_us: timeOfForm(from.value), to_us: timeOfForm(to.value)});
-  seen.commands.replaceChildren(el('div', {className: 'form'}, el('button', {onclick: give('ping'), title: 'Does it answer?'}, 'Ping'),
-    el('label', {}, `from${zoneText()}, sensor time`, from), el('label', {}, 'to', to), el('label', {}, 'channels, with commas', channels),
-    el('button', {onclick: give('minutes', range), title: 'Summaries of each minute of this time'}, 'Minutes'), el('button', {onclick: give('resend', range), title: 'Events and periods of this time once more'}, 'Resend'),
-    el('button', {onclick: give('raw', () => ({...range(), channels: channels.value.trim()})), title: 'Raw samples of this time as miniSEED'}, 'Raw samples')),
-  el('p', {className: 'soft note'}, 'What a building obeys is in its configuration: [fleet] accept. Who asked for what is in the journal here and in the building.'));
+  seen.commands.replaceChildren(el('div', {className: 'form'}, el('button', {onclick: give('ping'), title: 'Check that the building answers'}, 'Ping'),
+    el('label', {}, `from${zoneText()}, sensor time`, from), el('label', {}, 'to', to), el('label', {}, 'channels, separated by commas', channels),
+    el('button', {onclick: give('minutes', range), title: 'Send the summaries of each minute of this time'}, 'Minutes'), el('button', {onclick: give('resend', range), title: 'Send the events and periods of this time again'}, 'Resend'),
+    el('button', {onclick: give('raw', () => ({...range(), channels: channels.value.trim()})), title: 'Send the raw samples of this time as miniSEED'}, 'Raw samples')),
+  el('p', {className: 'soft note'}, 'A building executes the commands that [fleet] accept in its configuration allows. Commands are recorded in the journal here and in the building.'));
 }
 async function command(building, words) {
   try {
     const words_ = new URLSearchParams({building, ...words});
     const answer = await fetch(`command?${words_}`, {method: 'POST'}), content = await answer.json();
     if (!answer.ok) throw new Problem(content.problem);
-    say(`${words.verb}: sent to ${content.buildings === 1 ? building : content.buildings + ' buildings'}; the answer comes in the journal`);
+    say(`${words.verb}: sent to ${content.buildings === 1 ? building : content.buildings + ' buildings'}; see the journal for the answer`);
   } catch (e) { say(`${words.verb}: ${e.message}`); }
   soon();
 }

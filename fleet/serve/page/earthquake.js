@@ -1,7 +1,7 @@
 'use strict';
 // Before and after an earthquake: every building, the largest significant loss first.
 const quake = {time_us: null, data: null};
-const kResults = {loss: 'loss', none: 'no significant loss', not_observable: 'not observable', nothing: 'nothing is known'};
+const kResults = {loss: 'loss', none: 'no significant loss', not_observable: 'not observable', nothing: 'no data'};
 
 function openEarthquake(main, time) {
   quake.list = el('div', {id: 'quakes', className: 'list plain'});
@@ -10,9 +10,9 @@ function openEarthquake(main, time) {
   const go = () => { const us = timeOfForm(quake.time.value); if (Number.isFinite(us)) location.hash = `#/earthquake/${us}`; };
   const minutes = () => { const us = timeOfForm(quake.time.value); if (Number.isFinite(us)) command('all', {verb: 'minutes', from_us: us - 600e6, to_us: us + 3600e6}); };
   main.replaceChildren(
-    wide('Earthquakes', quake.list, el('p', {className: 'soft note'}, 'Times at which at least three buildings began to shake, or to be softer, within a minute.'),
+    wide('Earthquakes', quake.list, el('p', {className: 'soft note'}, 'Times at which shaking or softening began in at least three buildings within a minute.'),
       el('div', {className: 'form'}, el('label', {}, `another time${zoneText()}`, quake.time), el('button', {onclick: go}, 'Compare'),
-        me.commands ? el('button', {onclick: minutes, title: 'Every building sends its minutes from 10 min before to 60 min after'}, 'Ask every building for minutes') : null)),
+        me.commands ? el('button', {onclick: minutes, title: 'Request minute summaries from every building, from 10 min before to 60 min after'}, 'Request minutes from every building') : null)),
     quake.result);
   quake.time_us = time ? +time : null;
   quake.data = null;

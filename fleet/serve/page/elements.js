@@ -1,5 +1,5 @@
 'use strict';
-// Parts of the page. Text of buildings and people becomes text nodes alone, never markup.
+// Parts of the page. Text of buildings and people becomes text nodes, never markup.
 const $ = id => document.getElementById(id);
 function put(e, properties, children) {
   for (const [name, value] of Object.entries(properties)) {
@@ -20,11 +20,11 @@ function table(titles, rows, className = '') {
   return el('table', {className}, el('thead', {}, el('tr', {}, titles.map(t => t.startsWith('#') ? el('th', {className: 'n', scope: 'col'}, t.slice(1)) : el('th', {scope: 'col'}, t)))), el('tbody', {}, rows));
 }
 
-// What a building needs: a shape too, so that nobody needs to see colours.
+// Shows the urgency of a building by a shape too, for color-blind viewers.
 const kUrgencies = ['alarm', 'warning', 'silent', 'changed', 'known', 'well'];
 const kMeaning = {
-  alarm: 'an alarm is raised that nobody acknowledged', warning: 'a warning is raised that nobody acknowledged', silent: 'no heartbeat for three minutes',
-  changed: 'something has changed, for information', known: 'what is raised was acknowledged', well: 'nothing is raised, and it is heard',
+  alarm: 'an alarm is raised and not acknowledged', warning: 'a warning is raised and not acknowledged', silent: 'no heartbeat for three minutes',
+  changed: 'only information is raised', known: 'all raised events are acknowledged', well: 'no event is raised, and heartbeats come',
 };
 function shape(urgency) {
   switch (urgency) {
@@ -42,7 +42,7 @@ class Problem extends Error {}
 async function ask(path, parameters = {}, options = {}) {
   const words = new URLSearchParams(Object.entries(parameters).filter(([, v]) => v !== undefined && v !== null && v !== ''));
   let answer;
-  try { answer = await fetch(`${path}?${words}`, options); } catch { throw new Problem('this page\'s server does not answer'); }
+  try { answer = await fetch(`${path}?${words}`, options); } catch { throw new Problem('the server of this page does not answer'); }
   if (answer.status === 204) return null;
   const type = answer.headers.get('Content-Type') || '';
   const content = type.startsWith('application/json') ? await answer.json() : {problem: (await answer.text()).trim()};
@@ -51,14 +51,14 @@ async function ask(path, parameters = {}, options = {}) {
 }
 const percentOf = (ratio, error) => percent(ratio, error) + (error > 0 ? ` ± ${(100 * error).toFixed(error > 0.01 ? 1 : 2)} %` : '');
 const bytes = n => n < 0 ? 'not known' : n < 1e6 ? `${(n / 1e3).toFixed(0)} kB` : n < 1e9 ? `${(n / 1e6).toFixed(1)} MB` : `${(n / 1e9).toFixed(1)} GB`;
-// "kx_1_y2": where it is.
+// Returns the place of "kx_1_y2" in words.
 function placeOf(name) {
   const [kind, where, frame] = name.split('_');
   if (!where) return name;
   const stories = where.includes('to') ? `stories ${where.replace('to', ' to ')}` : (kind.startsWith('G') ? 'floor ' : 'story ') + where;
   return frame ? `${stories}, ${kind.startsWith('G') ? 'panel' : 'frame'} ${frame}` : stories;
 }
-// Times in a form: as the page shows them, UTC or the device's.
+// Times in a form, in UTC or in the zone of the device.
 const formTime = us => dateText(us).slice(0, 19);
 const timeOfForm = text => text ? Math.round((zone === 'UTC' ? Date.parse(text + 'Z') : Date.parse(text)) * 1e3) : NaN;
 const timeInput = (id, us) => el('input', {id, type: 'datetime-local', step: 1, value: formTime(us)});

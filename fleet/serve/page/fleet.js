@@ -1,5 +1,5 @@
 'use strict';
-// Which view is shown, and how often it asks.
+// Selects the view and polls the server.
 const kEvery_ms = {overview: 1000, building: 3000, earthquake: 3000, journal: 2000};
 const me = {who: '', role: 'viewer', hub: false, get commands() { return this.hub && this.role === 'operator'; }};
 let poll = null, timer = null, kind = '', turn = 0;
@@ -40,7 +40,7 @@ function trouble(text) {
   const box = $('trouble');
   troubleSince = text ? troubleSince || Date.now() * 1e3 : 0;
   box.hidden = !text;
-  if (text) box.textContent = `${text}; what is shown is of before ${when(troubleSince)}`;
+  if (text) box.textContent = `${text}; the values shown are from before ${when(troubleSince)}`;
 }
 let saying = null;
 function say(text) {

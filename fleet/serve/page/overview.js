@@ -1,5 +1,5 @@
 'use strict';
-// Every building: counts, map, list by severity. Drawn anew when something differs.
+// All buildings: counts, map, list by severity. Redrawn when something changes.
 const overview = {version: '', data: null, behind_us: 0, urgencies: new Set(), words: '', view: null};
 
 function openOverview(main) {
@@ -8,8 +8,8 @@ function openOverview(main) {
   overview.heard = el('p', {className: 'soft note'});
   overview.body = el('tbody');
   overview.empty = el('p', {className: 'soft empty', hidden: true});
-  const find = el('input', {type: 'search', placeholder: 'name, title, place', 'aria-label': 'Show buildings whose name, title or place has this', value: overview.words, oninput: e => { overview.words = e.target.value; filterOverview(); }});
-  overview.map = svg('svg', {id: 'map', role: 'group', 'aria-label': 'Map of buildings, north above'});
+  const find = el('input', {type: 'search', placeholder: 'name, title, place', 'aria-label': 'Show buildings whose name, title or place contains this text', value: overview.words, oninput: e => { overview.words = e.target.value; filterOverview(); }});
+  overview.map = svg('svg', {id: 'map', role: 'group', 'aria-label': 'Map of buildings, north at the top'});
   overview.mapNote = el('p', {className: 'soft note'});
   const zoom = factor => () => { zoomMap(factor); };
   main.replaceChildren(
@@ -34,8 +34,8 @@ function drawOverview() {
   const d = overview.data, all = d.buildings.length;
   overview.counts.replaceChildren(...kUrgencies.map(u => el('li', {}, el('button', {title: kMeaning[u], 'aria-pressed': String(overview.urgencies.has(u)), onclick: () => { if (!overview.urgencies.delete(u)) overview.urgencies.add(u); drawOverview(); }}, sign(u), el('b', {}, String(d.counts[u])), u))));
   const nothing = d.now_us - d.heard_us > 180e6;
-  overview.heard.textContent = all === 0 ? 'No building has said anything yet, or the workers do not store it.'
-    : `${all} buildings. ` + (nothing ? `Nothing at all has come since ${when(d.heard_us)}: hub and workers are to be looked after first.` : '');
+  overview.heard.textContent = all === 0 ? 'No building has sent anything yet, or no worker stores it.'
+    : `${all} buildings. ` + (nothing ? `Nothing has come since ${when(d.heard_us)}: check the hub and the workers first.` : '');
   $('alert').textContent = kUrgencies.filter(u => d.counts[u]).map(u => `${d.counts[u]} ${u}`).join(', ');
   document.title = (d.counts.alarm ? `(${d.counts.alarm}) ` : '') + 'framewatch: buildings';
   const rows = new Map();
@@ -53,7 +53,7 @@ function overviewRow(b) {
   return el('tr', {}, cell(null, urgencyWord(b.urgency)),
     el('td', {className: 'name'}, el('a', {href: `#/building/${b.name}`}, titleOf(b)), el('div', {className: 'soft'}, [b.title ? b.name : '', b.place].filter(Boolean).join(', '))),
     cell(null, b.since_us ? when(b.since_us) : ''),
-    cell(null, b.message, b.raised > 1 ? el('div', {className: 'soft'}, `${b.raised} findings are raised`) : null));
+    cell(null, b.message, b.raised > 1 ? el('div', {className: 'soft'}, `${b.raised} findings`) : null));
 }
 function shown(b) {
   const words = overview.words.trim().toLowerCase();
@@ -63,10 +63,10 @@ function filterOverview() {
   let count = 0;
   for (const {building, row} of overview.rows.values()) { row.hidden = !shown(building); count += row.hidden ? 0 : 1; }
   overview.empty.hidden = count > 0;
-  overview.empty.textContent = 'No building is like this.';
+  overview.empty.textContent = 'No building matches.';
 }
 
-// Latitude and longitude on a plane that is true to angles at the middle; longer ways are not true.
+// Projects latitude and longitude on a plane. Angles are true in the middle; long distances are not.
 function mapPlane(buildings) {
   const middle = (low, high) => 0.5 * (low + high);
   const lat = buildings.map(b => b.latitude), lon = buildings.map(b => b.longitude);
@@ -81,7 +81,7 @@ function mapPlane(buildings) {
 function drawMap() {
   if (!overview.data || !overview.map.isConnected) return;
   const placed = overview.data.buildings.filter(b => b.latitude !== undefined), lacking = overview.data.buildings.length - placed.length;
-  overview.mapNote.textContent = placed.length === 0 ? 'No building has a position: framewatch fleet describe NAME --latitude --longitude.' : (lacking ? `${lacking} more have no position. ` : '') + 'Lines: degrees. Wheel or buttons: nearer; drag: move.';
+  overview.mapNote.textContent = placed.length === 0 ? 'No building has a position: framewatch fleet describe NAME --latitude --longitude.' : (lacking ? `${lacking} others have no position. ` : '') + 'Lines: degrees. Wheel or buttons: nearer; drag: move.';
   const box = overview.map.getBoundingClientRect(), width = Math.max(200, box.width), height = Math.max(200, box.height);
   overview.map.setAttribute('viewBox', `${-width / 2} ${-height / 2} ${width} ${height}`);
   if (!placed.length) { overview.map.replaceChildren(); return; }

@@ -8,8 +8,8 @@ expected='
 ^ca.key$
 ^hub3.pem$
 ^users.conf$
-^fleet.key stays here; fleet.csr goes to who runs the hub
-^kobe-03: fleet.pem goes back to the building, with hub/ca.pem
-^copy hub/users.conf to every server
-^kobe-03 is not let in any more
+^Keep fleet.key here. Send fleet.csr to the operator of the hub.
+^kobe-03: send fleet.pem back to the building, with hub/ca.pem
+^Copy hub/users.conf to every server
+^kobe-03 is no longer admitted
 '

@@ -40,14 +40,14 @@ TEST(ArchiveTask, EveryLineThatIsNoTaskIsRefusedWithTheRule) {
   const std::pair<std::string, std::string> bad[] = {
       {"", "1 words between tabs"},
       {"1\t" + kKey + "\tc\to\t0\t0\t1", "7 words between tabs"},
-      {"0\t" + kKey + "\tc\to" + times + "\tlog", "is no number of a task"},
-      {"x\t" + kKey + "\tc\to" + times + "\tlog", "is no number of a task"},
-      {"99999999999\t" + kKey + "\tc\to" + times + "\tlog", "is no number of a task"},
-      {"1\tkey\tc\to" + times + "\tlog", "key: is no key"},
-      {"1\t0123456789AB-00112233ffff-deadbeef0000\tc\to" + times + "\tlog", "is no key"},
+      {"0\t" + kKey + "\tc\to" + times + "\tlog", "is not the number of a task"},
+      {"x\t" + kKey + "\tc\to" + times + "\tlog", "is not the number of a task"},
+      {"99999999999\t" + kKey + "\tc\to" + times + "\tlog", "is not the number of a task"},
+      {"1\tkey\tc\to" + times + "\tlog", "key: is not a key"},
+      {"1\t0123456789AB-00112233ffff-deadbeef0000\tc\to" + times + "\tlog", "is not a key"},
       {"1\t" + kKey + "\tc\to\t0\t0\tsoon\tlog", "soon: is no time"},
-      {"1\t" + kKey + "\tc\to\t1\t0\t2\tlog", "not in order"},
-      {"1\t" + kKey + "\tc\to\t0\t2\t2\tlog", "not in order"},
+      {"1\t" + kKey + "\tc\to\t1\t0\t2\tlog", "in the order warm-up"},
+      {"1\t" + kKey + "\tc\to\t0\t2\t2\tlog", "in the order warm-up"},
       {"1\t" + kKey + "\t\to" + times + "\tlog", "a name is empty"}};
   for (const auto& [line, rule] : bad) {
     std::string problem;
@@ -67,7 +67,7 @@ TEST(ArchiveTask, AManifestSaysInWhichLineItIsWrong) {
   };
   EXPECT_EQ(refused(manifest_line(example(1)) + manifest_line(example(3))),
             path + ":2: is numbered 3");
-  EXPECT_EQ(refused(""), path + ": holds no task");
+  EXPECT_EQ(refused(""), path + ": has no task");
   EXPECT_EQ(refused(manifest_line(example()) + "\n").find(path + ":2: 1 words"), 0u);
   std::string problem;
   EXPECT_FALSE(read_manifest(directory.path("none"), problem));

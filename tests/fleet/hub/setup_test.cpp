@@ -68,7 +68,7 @@ TEST(Setup, MakesWhatIsMissingAndLeavesTheRest) {
   const SetupOutcome second = set_up(parts, hub.asker(), false);
   EXPECT_EQ(second.changed, 0);
   EXPECT_EQ(hub.changes, static_cast<int>(kParts));
-  EXPECT_EQ(second.lines.front(), "FW_EVENT: as it should be");
+  EXPECT_EQ(second.lines.front(), "FW_EVENT: correct");
 }
 
 TEST(Setup, SaysWhatDiffersAndChangesItUnlessOnlyLooking) {

@@ -80,7 +80,7 @@ TEST_F(CommanderAtWork, WhoIsAwayIsSaid) {
   line_.nobody(0);
   commander_.step(Commander::kWait_us - 1, kUtc_us);
   ASSERT_EQ(results_.size(), 1u);
-  EXPECT_EQ(results_[0].answer, "the building is away");
+  EXPECT_EQ(results_[0].answer, "the building is not connected");
   commander_.step(Commander::kWait_us, kUtc_us);
   ASSERT_EQ(results_.size(), 2u);
   EXPECT_EQ(results_[1].answer, "no answer in time");
@@ -94,7 +94,7 @@ TEST_F(CommanderAtWork, WithoutAHubNothingIsKeptForLater) {
   ASSERT_TRUE(commander_.give(order("ping")));
   commander_.step(0, kUtc_us);
   ASSERT_EQ(results_.size(), 2u);
-  EXPECT_EQ(results_[0].answer, "the hub is away");
+  EXPECT_EQ(results_[0].answer, "the hub is not connected");
   line_.up = true;
   commander_.step(1, kUtc_us);
   EXPECT_TRUE(line_.sent.empty());

@@ -178,7 +178,7 @@ TEST_F(FleetServerOnPostgres, AnOperatorsCommandIsInTheJournalBeforeItIsSent) {
   page.takes = false;
   EXPECT_TRUE(has(page.post("/command?building=b&verb=ping", as(kOperator)), "503"));
   EXPECT_EQ(number("SELECT answer FROM journal_answer ORDER BY came DESC NULLS LAST LIMIT 1"),
-            "too many commands at once");
+            "too many commands are waiting: try again later");
 }
 
 TEST_F(FleetServerOnPostgres, AnOverviewThatIsTheSameIsNotSentAgain) {

@@ -62,7 +62,7 @@ TEST_F(PeopleFile, ABrokenFileLetsNobodyIn) {
        {std::pair(good + "bob viewer\n", ":2: must be NAME ROLE SHA256"),
         std::pair(good + "bob owner " + digest + "\n", ":2: a role is viewer or operator"),
         std::pair(good + "bob viewer " + digest.substr(1) + "\n", ":2: a SHA-256"),
-        std::pair(good + good, ":2: this name stands there already"),
+        std::pair(good + good, ":2: this name occurs twice"),
         std::pair(good + "<b> viewer " + digest + "\n", ":2: a name has")}) {
     EXPECT_NE(read(text).find(why), std::string::npos) << people_.read(path_);
     EXPECT_TRUE(people_.all().empty());

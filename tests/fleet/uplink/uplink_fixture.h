@@ -15,7 +15,7 @@
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_schema.h"
 #include "fleet/link/link.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 #include "fleet/uplink/uplink.h"
 #include "tests/support/temporary.h"
 

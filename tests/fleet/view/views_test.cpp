@@ -15,9 +15,7 @@
 #include "fleet/store/fleet_store.h"
 #include "fleet/view/building_view.h"
 #include "fleet/view/earthquake_view.h"
-#include "fleet/view/fetched_samples.h"
 #include "fleet/view/overview.h"
-#include "fleet/view/series.h"
 #include "tests/fleet/support/own_postgres.h"
 
 namespace framewatch::fleet {
@@ -180,9 +178,9 @@ TEST_F(Views, RawSamplesAreWholeOrItIsSaidWhyNot) {
   EXPECT_FALSE(read_fetched(look_, "tower", "part", why));
   EXPECT_EQ(why, "1 of 2 pieces have come");
   EXPECT_FALSE(read_fetched(look_, "tower", "none", why));
-  EXPECT_EQ(why, "there is nothing: no");
+  EXPECT_EQ(why, "no samples: no");
   EXPECT_FALSE(read_fetched(look_, "tower", "other", why));
-  EXPECT_EQ(why, "nothing of it has come");
+  EXPECT_EQ(why, "no piece has come yet");
   const json all = json::parse(building_json(look_, "tower"))["stretches"];
   ASSERT_EQ(all.size(), 3u);
   for (const json& one : all) EXPECT_EQ(one["problem"], one["request"] == "none" ? "no" : "");

@@ -9,8 +9,7 @@
 
 #include "daemon/base/clocks.h"
 #include "drivers/files/encoded.h"
-#include "fleet/message/key.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 #include "tests/fleet/worker/worker_fixture.h"
 
 namespace framewatch::fleet {
@@ -54,18 +53,18 @@ TEST(Judge, TakesAPieceOfRawSamples) {
   EXPECT_EQ(taken.request, "r-17");
   EXPECT_EQ(taken.content, (Bytes{1, 2, 3}));
   piece.headers[header::kPieces] = "0";
-  EXPECT_EQ(reason(piece), "its number is none of a piece");
+  EXPECT_EQ(reason(piece), "its piece number is not valid");
   Message none =
       packed(up_subject("kobe", "raw.r-18"), raw_key("kobe", "r-18", 0), "text", {'n', 'o'}, "");
   none.headers[header::kPiece] = none.headers[header::kPieces] = "0";
   EXPECT_EQ(judged(none).pieces.at(0).pieces, 0);
   none.bytes.assign(2000, 'n');
-  EXPECT_EQ(reason(none), "it says at length that there is nothing");
+  EXPECT_EQ(reason(none), "its reason for sending nothing is too long");
   for (const auto& [number, of] : {std::pair("3", "3"), std::pair("-1", "3"), std::pair("x", "3"),
                                    std::pair("2", ""), std::pair("2", "99999999999")}) {
     piece.headers[header::kPiece] = number;
     piece.headers[header::kPieces] = of;
-    EXPECT_EQ(reason(piece), "its number is none of a piece") << number;
+    EXPECT_EQ(reason(piece), "its piece number is not valid") << number;
   }
 }
 
@@ -84,7 +83,7 @@ TEST(Judge, RefusesWhatNamesAnother) {
   EXPECT_EQ(reason(forged), "its key names kobe, its subject osaka");
   Message other_event = event_message("kobe", 1);
   other_event.headers[header::kKey] = event_message("kobe", 2).header(header::kKey);
-  EXPECT_NE(reason(other_event).find("its key is not that of its content"), std::string::npos);
+  EXPECT_NE(reason(other_event).find("its key does not match its content"), std::string::npos);
   Message other_period = summary_message("kobe", 600, 0);
   other_period.subject = up_subject("kobe", "summary.3600");
   EXPECT_NE(reason(other_period).find("its subject says summary.3600"), std::string::npos);
@@ -93,13 +92,13 @@ TEST(Judge, RefusesWhatNamesAnother) {
 TEST(Judge, RefusesWhatIsNoMessage) {
   Message message = event_message("kobe", 1);
   message.headers.erase(header::kKey);
-  EXPECT_EQ(reason(message), "it has no key");
+  EXPECT_EQ(reason(message), "its key (Nats-Msg-Id) is missing");
   message = event_message("kobe", 1);
   message.subject = "fw.down.kobe.raw";
-  EXPECT_EQ(reason(message), "its subject is not one of a building");
+  EXPECT_EQ(reason(message), "its subject is not fw.up.BUILDING.KIND");
   message = event_message("kobe", 1);
   message.headers[header::kType] = "summary_t";
-  EXPECT_EQ(reason(message), "event is no event_t but summary_t");
+  EXPECT_EQ(reason(message), "event must be event_t, not summary_t");
   message = event_message("kobe", 1);
   message.headers.erase(header::kEncoding);
   message.bytes = drivers::encoded(event(1));

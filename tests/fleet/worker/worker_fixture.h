@@ -12,8 +12,7 @@
 
 #include "drivers/files/encoded.h"
 #include "fleet/link/link.h"
-#include "fleet/message/key.h"
-#include "fleet/message/subject.h"
+#include "fleet/message/address.h"
 
 // Messages of buildings, and a hub that holds them until they are acknowledged.
 namespace framewatch::fleet {

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "fleet/worker/flood_gate.h"
 #include "tests/fleet/worker/worker_fixture.h"
 
 namespace framewatch::fleet {
@@ -95,7 +94,7 @@ TEST_F(WorkerTest, OneMessageThatTheDatabaseDoesNotTakeStopsNoOther) {
   std::string reason;
   for (const FleetBatch& batch : database_.batches)
     for (const ReceivedOther& other : batch.others) reason = other.reason;
-  EXPECT_EQ(reason, "the database does not take it: no such number");
+  EXPECT_EQ(reason, "the database rejects it: no such number");
   EXPECT_EQ(worker_.counters().refused, 1);
 }
 

@@ -7,7 +7,7 @@
 #include "daemon/monitor/event_report/report_words.h"
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "daemon/page/findings/model_fit.h"
+#include "daemon/page/findings/finding.h"
 #include "tests/support/config_fixture.h"
 
 namespace framewatch::daemon {
@@ -65,7 +65,7 @@ TEST_F(AnswersTest, AChangeSaysWhetherItLasts) {
 }
 
 TEST_F(AnswersTest, AQuietWholeBuildingNeedsNothing) {
-  EXPECT_EQ(said(0), "No. None of 4 elements differs from what it was like (its baseline).");
+  EXPECT_EQ(said(0), "No. None of 4 elements differs from its baseline.");
   EXPECT_EQ(said(1),
             "Yes. All 6 sensors send, and the model leaves 3.1 % of the motion unexplained.");
   EXPECT_EQ(said(2), "Nothing: no acceleration over 0.05 m/s².");
@@ -87,7 +87,7 @@ TEST_F(AnswersTest, AChangeHasTheNumberOfItsEventAndTheOrderOfTheQuestions) {
   EXPECT_EQ(changed.line.text,
             "Yes. Story 1, frame y2 (kx_1_y2) has lost 14.8 % of its stiffness, give or take "
             "0.4 %: 36 times its uncertainty.");
-  EXPECT_NE(said(3).find("structural engineer look at story 1, frame y2"), std::string::npos);
+  EXPECT_NE(said(3).find("structural engineer inspect story 1, frame y2"), std::string::npos);
   EXPECT_EQ(answer(3).state, AnswerState::bad);
 }
 
@@ -117,17 +117,17 @@ TEST_F(AnswersTest, ADeadSensorIsSaid) {
   EXPECT_TRUE(known_.findings.back().of_channel);
   EXPECT_EQ(answer(1).state, AnswerState::look);
   EXPECT_EQ(said(1), "Only in part. F1-Y1 channel_silent. | 5 of 6 sensors are good.");
-  EXPECT_EQ(said(3), "Look at sensor F1-Y1: power, cable, mounting.");
+  EXPECT_EQ(said(3), "Check the power, cable and mounting of sensor F1-Y1.");
   EXPECT_EQ(said(0).substr(0, 3), "No.");
 }
 
 TEST_F(AnswersTest, SilenceIsNoBelief) {
   known_.silent_s = 75;
-  EXPECT_EQ(said(1), "No: no samples for 1 min 15 s. What is shown is old.");
+  EXPECT_EQ(said(1), "No: no samples for 1 min 15 s. The values shown are old.");
   EXPECT_NE(said(3).find("framewatch status"), std::string::npos);
   known_.silent_s = 0;
   known_.estimates_silent_s = 10;
-  EXPECT_NE(said(1).find("the estimator says nothing for 10 s"), std::string::npos);
+  EXPECT_NE(said(1).find("there are no estimates for 10 s"), std::string::npos);
 }
 
 TEST_F(AnswersTest, OfATallBuildingTheStoriesThatSwayedMostAreNamed) {
@@ -198,7 +198,7 @@ TEST_F(AnswersTest, StrongMotionThatIsNotGreenIsToBeLookedAt) {
   e.message = "after strong motion: red, story 1 drifted by 2 %; report event-x.html";
   find(e);
   EXPECT_EQ(known_.findings[0].text, "after strong motion: red, story 1 drifted by 2 %.");
-  EXPECT_NE(said(3).find("structural engineer look at the building"), std::string::npos);
+  EXPECT_NE(said(3).find("structural engineer inspect the building"), std::string::npos);
   EXPECT_EQ(said(0).substr(0, 3), "No.");
   EXPECT_EQ(said(1).substr(0, 4), "Yes.");
 }

@@ -5,7 +5,7 @@
 #include "daemon/tools/demo/demo_scenario.h"
 
 namespace framewatch::daemon {
-namespace building_json_test {
+namespace page_json_test {
 
 nlohmann::json building_of(const Scenario& scenario) {
   return nlohmann::json::parse(building_json(scenario.config, 100));
@@ -40,5 +40,5 @@ TEST(BuildingJson, SaysWhereChannelsAreThatRideOnNoFrame) {
   EXPECT_FALSE(building["axes"][1].contains("x_m"));
 }
 
-}  // namespace building_json_test
+}  // namespace page_json_test
 }  // namespace framewatch::daemon

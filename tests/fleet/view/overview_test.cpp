@@ -1,4 +1,4 @@
-#include "fleet/view/building_state.h"
+#include "fleet/view/overview.h"
 
 #include <utility>
 #include <vector>
@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace framewatch::fleet {
-namespace building_state_test {
+namespace overview_test {
 
 constexpr std::int64_t kNow_us = 1'795'305'600'000'000;
 constexpr std::int64_t kAlive_us = kNow_us - 60'000'000;
@@ -60,7 +60,7 @@ TEST(BuildingState, WhatWasNeverHeardIsSilentAfterAWhile) {
   state.first_us = kAlive_us;
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::well);
   state.first_us = kLongAgo_us;
-  EXPECT_EQ(judged(state, kNow_us).message, "no heartbeat has ever come");
+  EXPECT_EQ(judged(state, kNow_us).message, "no heartbeat has come yet");
 }
 
 TEST(BuildingState, EventsComeChangeAndGo) {
@@ -76,5 +76,5 @@ TEST(BuildingState, EventsComeChangeAndGo) {
   EXPECT_EQ(raised[0].id, 2);
 }
 
-}  // namespace building_state_test
+}  // namespace overview_test
 }  // namespace framewatch::fleet

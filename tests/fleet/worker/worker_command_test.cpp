@@ -1,4 +1,4 @@
-#include "fleet/worker/missing_days.h"
+#include "fleet/worker/worker_command.h"
 
 #include <cstdlib>
 #include <string>
@@ -9,7 +9,7 @@
 #include "tests/fleet/worker/worker_fixture.h"
 
 namespace framewatch::fleet {
-namespace missing_days_test {
+namespace worker_command_test {
 
 std::string day(const std::string& rest) {
   return R"({"format":"framewatch.inventory/1","days":[{"day":"2026-11-20",)" + rest + "]}";
@@ -69,5 +69,5 @@ TEST(MissingDaysOnServer, AreThoseOfWhichTheDatabaseHasLess) {
   EXPECT_TRUE(missing_days(store, "osaka")->empty());
 }
 
-}  // namespace missing_days_test
+}  // namespace worker_command_test
 }  // namespace framewatch::fleet

@@ -1,4 +1,4 @@
-#include "fleet/archive/archive_logs.h"
+#include "fleet/archive/manifest_command.h"
 
 #include <filesystem>
 
@@ -12,7 +12,7 @@
 #include "tests/support/temporary.h"
 
 namespace framewatch::fleet {
-namespace archive_logs_test {
+namespace manifest_command_test {
 
 using daemon::kSecond_us;
 
@@ -126,10 +126,10 @@ TEST(ArchiveLogs, EveryProblemIsToldAtOnce) {
       config, problems);
   ASSERT_EQ(problems.size(), 4u);
   EXPECT_NE(problems[0].find("none.lcmlog"), std::string::npos);
-  EXPECT_NE(problems[1].find("holds no raw log"), std::string::npos);
-  EXPECT_NE(problems[2].find("is named twice"), std::string::npos);
+  EXPECT_NE(problems[1].find("has no closed raw log"), std::string::npos);
+  EXPECT_NE(problems[2].find("is given twice"), std::string::npos);
   EXPECT_NE(problems[3].find("a tab"), std::string::npos);
 }
 
-}  // namespace archive_logs_test
+}  // namespace manifest_command_test
 }  // namespace framewatch::fleet
