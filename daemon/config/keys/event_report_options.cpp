@@ -20,7 +20,6 @@ const Option kOptions[] = {
     {.section = "event_report",
      .key = "trigger_mps2",
      .unit = "m/s^2",
-     .default_value = "0.1",
      .min = 1e-4,
      .max = 50,
      .meaning = "Strong motion begins when the base is this far from its mean.",
@@ -29,7 +28,6 @@ const Option kOptions[] = {
     {.section = "event_report",
      .key = "quiet_s",
      .unit = "s",
-     .default_value = "20",
      .min = 2,
      .max = 45,
      .meaning = "Strong motion ends after this time below the trigger.",
@@ -37,7 +35,6 @@ const Option kOptions[] = {
      .target = into<&EventReportSettings::options, &estimator::ShakingOptions::quiet_s>},
     {.section = "event_report",
      .key = "yellow_drift_ratio",
-     .default_value = "0.005",
      .min = 0,
      .max = 1,
      .meaning = "Peak drift over story height that makes the report yellow.",
@@ -45,7 +42,6 @@ const Option kOptions[] = {
      .target = into<&EventReportSettings::yellow_drift_ratio>},
     {.section = "event_report",
      .key = "red_drift_ratio",
-     .default_value = "0.015",
      .min = 0,
      .max = 1,
      .meaning = "Peak drift over story height that makes the report red.",
@@ -53,7 +49,6 @@ const Option kOptions[] = {
      .target = into<&EventReportSettings::red_drift_ratio>},
     {.section = "event_report",
      .key = "yellow_loss_ratio",
-     .default_value = "0.05",
      .min = 0,
      .max = 1,
      .meaning =
@@ -62,7 +57,6 @@ const Option kOptions[] = {
      .target = into<&EventReportSettings::yellow_loss_ratio>},
     {.section = "event_report",
      .key = "red_loss_ratio",
-     .default_value = "0.2",
      .min = 0,
      .max = 1,
      .meaning = "Lasting stiffness loss that makes the report red.",
@@ -71,7 +65,6 @@ const Option kOptions[] = {
     {.section = "event_report",
      .key = "most_reports",
      .type = integer,
-     .default_value = "500",
      .min = 1,
      .max = 100000,
      .meaning = "Number of reports to keep; the oldest are removed.",
@@ -81,7 +74,7 @@ const Option kOptions[] = {
 
 constexpr std::string_view kByHand = "one for all stories or one for each; type may give it";
 
-constexpr Option median(std::string_view key, std::string_view meaning) {
+Option median(std::string_view key, std::string_view meaning) {
   return {.section = "fragility",
           .key = key,
           .type = grid,
@@ -94,7 +87,7 @@ constexpr Option median(std::string_view key, std::string_view meaning) {
           .by_hand = kByHand};
 }
 
-constexpr Option dispersion(std::string_view key, std::string_view meaning) {
+Option dispersion(std::string_view key, std::string_view meaning) {
   return {.section = "fragility",
           .key = key,
           .type = grid,
@@ -122,6 +115,7 @@ const Option kFragility[] = {
     {.section = "fragility",
      .key = "design_level",
      .type = choice,
+     .no_default = true,
      .choices = "high|moderate|low|pre",
      .meaning = "Seismic code of the design; required with type. pre: before codes. S5, C3 and URM "
                 "have only low and pre.",
@@ -130,7 +124,6 @@ const Option kFragility[] = {
     {.section = "fragility",
      .key = "drift_limits",
      .type = choice,
-     .default_value = "\"story\"",
      .choices = "story|height",
      .meaning = "story: types without L, M, H use low-rise limits, which apply to a single story. "
                 "height: limits follow the number of stories and judge damage earlier.",
@@ -158,7 +151,6 @@ const Option kFragility[] = {
         "Standard deviation of that drift's logarithm, without the uncertainty of the shaking."),
     {.section = "fragility",
      .key = "restricted_probability",
-     .default_value = "0.25",
      .min = 0.01,
      .max = 0.99,
      .meaning =
@@ -167,7 +159,6 @@ const Option kFragility[] = {
      .target = into<&FragilitySettings::rules, &estimator::PlacardRules::restricted>},
     {.section = "fragility",
      .key = "unsafe_probability",
-     .default_value = "0.25",
      .min = 0.01,
      .max = 0.99,
      .meaning = "Probability of at least extensive damage in a story for the placard unsafe.",

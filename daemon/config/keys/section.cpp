@@ -162,8 +162,7 @@ bool ConfigSection::given(std::string_view key) const {
 
 std::string ConfigSection::default_of(std::string_view key) const {
   const Option& o = option(key);
-  return std::string(paper_defaults_ && !o.paper_default.empty() ? o.paper_default
-                                                                 : o.default_value);
+  return paper_defaults_ && !o.paper_default.empty() ? o.paper_default : o.default_value;
 }
 
 double ConfigSection::number(std::string_view key) const {
