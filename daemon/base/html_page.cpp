@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/svg_style.h"
+#include "daemon/base/svg_plot.h"
 
 namespace framewatch::daemon {
 namespace {

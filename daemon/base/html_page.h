@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/html_text.h"
+#include "daemon/base/printable.h"
 
 namespace framewatch::daemon {
 

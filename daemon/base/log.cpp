@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
-#include "daemon/base/terminal_colour.h"
 
 namespace framewatch::daemon {
 namespace {

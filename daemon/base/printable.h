@@ -1,10 +1,34 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace framewatch::daemon {
+
+/// A character of a text.
+struct CodePoint {
+  std::uint32_t value = 0;
+  std::size_t bytes = 0;  ///< 0: what is there is no UTF-8
+};
+
+/// The first one of a text that is not empty.
+CodePoint first_character(std::string_view text);
+
+/// Text with the characters escaped that are markup in HTML: & < > and quotes.
+std::string html_text(const std::string& text);
+
+enum class Tone { good, doubtful, bad, strong };
+
+/// Whether colours are for this stream: a terminal that has them (TERM is not "dumb"), and the
+/// variable NO_COLOR is not set, or empty (https://no-color.org).
+bool takes_colour(std::FILE* stream);
+
+/// The text in the tone's colour when the stream takes colours, else the text. Its escapes are none
+/// of printable()'s business: what comes from outside is made printable before.
+std::string toned(Tone tone, const std::string& text, std::FILE* stream);
 
 inline constexpr std::size_t kMaxPrinted = 4096;  ///< bytes
 

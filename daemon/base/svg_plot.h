@@ -1,13 +1,42 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "daemon/base/svg_axis.h"
 #include "estimator/identify/estimate/estimate.h"
 
 namespace framewatch::daemon {
+
+/// One axis of a plot.
+struct SvgAxis {
+  std::string label;                                      ///< quantity and unit: "stiffness, kN/m"
+  double low = std::numeric_limits<double>::quiet_NaN();  ///< NaN: from the data
+  double high = std::numeric_limits<double>::quiet_NaN();
+  bool logarithmic = false;                  ///< only values > 0 are drawn
+  std::vector<std::string> categories = {};  ///< names at 1, 2, ... instead of numbers
+};
+
+struct SvgTick {
+  double value;
+  std::string label;
+};
+
+/// The axis with both ends. An end that is NaN is set a little beyond `values` (NaN and infinite
+/// ones are ignored), or half a category beyond the first or last category.
+SvgAxis fitted(SvgAxis axis, const std::vector<double>& values);
+
+/// Round numbers (1, 2 or 5 times a power of ten) between the ends, about `wanted` of them;
+/// logarithmic: powers of ten; categories: one each.
+std::vector<SvgTick> ticks(const SvgAxis& axis, int wanted);
+
+/// Position of a value on a fitted axis: 0 at low, 1 at high; NaN when it cannot be drawn.
+double position(const SvgAxis& axis, double value);
+
+/// CSS of every plot: seven colours that remain apart without red-green vision (0 blue, 1
+/// vermilion, 2 green, 3 purple, 4 orange, 5 sky, 6 grey), for light, dark and paper.
+std::string svg_style();
 
 /// How a series is drawn. Series differ by mark as well as by colour: colour alone is not enough.
 enum class SvgMark { line, thin_line, dashed, dots, rings, bars };

@@ -6,8 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/base/last_resort.h"
-#include "daemon/base/terminal_colour.h"
+#include "daemon/base/printable.h"
 #include "daemon/command_line/command_list.h"
 #include "daemon/command_line/fleet_program.h"
 #include "daemon/command_line/option_entries.h"

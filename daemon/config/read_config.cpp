@@ -8,7 +8,6 @@
 #include "daemon/config/config_size.h"
 #include "daemon/config/keys/section_table.h"
 #include "daemon/config/keys/suggest.h"
-#include "daemon/config/sections/can_reader.h"
 #include "daemon/config/sections/effects.h"
 #include "daemon/config/sections/sections.h"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/child_process.h"
+#include "daemon/base/process.h"
 
 namespace framewatch::fleet {
 namespace {

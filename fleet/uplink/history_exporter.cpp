@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/child_process.h"
+#include "daemon/base/process.h"
 #include "fleet/uplink/raw_sender.h"
 
 namespace framewatch::fleet {

@@ -7,7 +7,6 @@
 
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/terminal_colour.h"
 
 namespace framewatch::daemon {
 

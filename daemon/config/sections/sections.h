@@ -1,8 +1,6 @@
 #pragma once
 
-// The sections of a configuration, each read by a source of its own: structure.cpp, design.cpp,
-// channels.cpp, estimator.cpp, lcm.cpp, commands.cpp, watch.cpp, gap.cpp, history.cpp,
-// event_report.cpp, fragility.cpp, actions.cpp, fleet.cpp.
+// Readers of the sections of a configuration.
 
 #include <optional>
 #include <string>
@@ -32,15 +30,16 @@ struct StructureReading {
 
 StructureReading read_structure(const TomlValue& document, std::vector<TextProblem>& problems);
 
-DesignReading read_design(const TomlValue* design, const estimator::Structure& structure,
-                          bool shape_known, std::vector<TextProblem>& problems);
-
 /// Rule that a frame or channel name breaks; empty when it is good.
 std::string problem_of_name(const std::string& name);
 
 /// Every [[channel]] into config.pipeline.axes and config.sources.
 void read_channels(const TomlValue& document, const StructureReading& structure, Config& config,
                    std::vector<TextProblem>& problems);
+
+/// [[can]], [[can_node]] and the sources of the channels into config.can. Problems of a DBC file
+/// are reported at their place in it.
+void read_can(const TomlValue& document, Config& config, std::vector<TextProblem>& problems);
 
 estimator::EstimatorOptions read_estimator(const TomlValue& document,
                                            std::vector<TextProblem>& problems);

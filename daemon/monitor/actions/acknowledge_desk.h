@@ -10,8 +10,8 @@
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/acknowledged_t.hpp>
 
+#include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
-#include "daemon/base/once_a_second.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/estimation.h"
 

@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/monitor/event_report/drift_report.h"
 #include "daemon/monitor/event_report/drift_words.h"
 

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/number_words.h"
+#include "daemon/base/numbers.h"
 
 namespace framewatch::daemon {
 

@@ -4,7 +4,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/random_id.h"
+#include "daemon/base/process.h"
 
 namespace framewatch::daemon {
 namespace {

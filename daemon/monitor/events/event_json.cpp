@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/events/event_words.h"
 

@@ -9,7 +9,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_retention.h"
 #include "daemon/monitor/history/raw_log_care.h"

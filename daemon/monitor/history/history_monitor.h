@@ -8,7 +8,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/history_status_t.hpp>
 
-#include "daemon/base/damaged_database.h"
+#include "daemon/base/sqlite_file.h"
 
 namespace framewatch::daemon {
 

@@ -8,7 +8,7 @@
 
 #include <lcm/lcm-cpp.hpp>
 
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/history/history.h"

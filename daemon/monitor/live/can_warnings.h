@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/can/can_source.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/monitor/live/live_estimation.h"
 
 namespace framewatch::daemon {

@@ -1,7 +1,7 @@
 #include "daemon/monitor/live/service_report.h"
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/config/axis_names.h"
 
 namespace framewatch::daemon {

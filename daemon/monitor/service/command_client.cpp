@@ -12,7 +12,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/user_name.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/service/command_path.h"
 #include "drivers/files/descriptor.h"
 

@@ -13,7 +13,7 @@
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/page/metrics/metric_families.h"
 #include "drivers/lcm/message_check.h"
 

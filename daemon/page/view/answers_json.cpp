@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/page/view/page_json.h"
 #include "estimator/numeric/nan.h"
 

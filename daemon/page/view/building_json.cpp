@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "estimator/structure/group_design.h"
 #include "estimator/structure/parameter_table.h"
 

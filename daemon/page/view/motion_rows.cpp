@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 
 namespace framewatch::daemon {
 

@@ -6,7 +6,6 @@
 
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/terminal_colour.h"
 #include "daemon/config/keys/options_markdown.h"
 #include "daemon/config/read_config.h"
 #include "daemon/config/sections/config_problems.h"

@@ -12,7 +12,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/tools/commands/selftest_command.h"
 #include "daemon/tools/demo/demo_scenario.h"

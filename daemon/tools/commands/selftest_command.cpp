@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/base/terminal_colour.h"
+#include "daemon/base/printable.h"
 #include "daemon/config/sections/config_problems.h"
 
 namespace framewatch::daemon {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "daemon/tools/diagnosis/noise_beyond.h"
 #include "daemon/tools/simulation/effect_json.h"

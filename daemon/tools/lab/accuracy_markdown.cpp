@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "daemon/base/percent.h"
+#include "daemon/base/numbers.h"
 #include "daemon/tools/lab/reproduction_report.h"
 
 namespace framewatch::daemon {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "daemon/base/median.h"
+#include "daemon/base/numbers.h"
 #include "daemon/tools/lab/paper_buildings.h"
 #include "daemon/tools/lab/paper_method.h"
 #include "daemon/tools/lab/random_building.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/percent.h"
+#include "daemon/base/numbers.h"
 #include "daemon/tools/lab/reproduction.h"
 
 namespace framewatch::daemon {

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/json_text.h"
+#include "daemon/base/json.h"
 
 namespace framewatch::daemon {
 

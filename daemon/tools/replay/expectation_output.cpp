@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/html_text.h"
-#include "daemon/base/json_text.h"
+#include "daemon/base/json.h"
+#include "daemon/base/printable.h"
 #include "daemon/tools/replay/expectation_check.h"
 
 namespace framewatch::daemon {

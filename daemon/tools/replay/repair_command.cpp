@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/base/json_text.h"
+#include "daemon/base/json.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/tools/replay/log_survey.h"

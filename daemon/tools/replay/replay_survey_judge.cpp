@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/median.h"
+#include "daemon/base/numbers.h"
 #include "daemon/tools/replay/replay_survey.h"
 
 namespace framewatch::daemon {

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/median.h"
+#include "daemon/base/numbers.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/monitor/estimates/settled_windows.h"
 #include "daemon/monitor/events/event_words.h"

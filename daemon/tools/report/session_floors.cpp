@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/monitor/estimates/settled_windows.h"
 #include "estimator/identify/elements/guessed_design.h"

@@ -1,6 +1,6 @@
 #include <framewatch/session_status_t.hpp>
 
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/tools/session/recorder.h"
 
 namespace framewatch::daemon {

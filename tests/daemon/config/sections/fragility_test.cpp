@@ -6,7 +6,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/config/keys/option_table.h"
-#include "daemon/config/sections/hazus_limits.h"
+#include "daemon/config/sections/fragility.h"
 #include "tests/support/config_fixture.h"
 
 namespace framewatch::daemon {

@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/user_name.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/actions/acknowledge_command.h"
 #include "daemon/monitor/actions/acknowledge_desk.h"
 #include "daemon/monitor/events/acknowledge_messages.h"

@@ -1,4 +1,4 @@
-#include "daemon/base/last_resort.h"
+#include "daemon/base/exit_code.h"
 
 #include <unistd.h>
 
@@ -22,7 +22,7 @@
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {
-namespace last_resort_test {
+namespace exit_code_test {
 
 namespace fs = std::filesystem;
 
@@ -214,5 +214,5 @@ TEST(Program, ADirectoryAsAStateIsSaid) {
   }
 }
 
-}  // namespace last_resort_test
+}  // namespace exit_code_test
 }  // namespace framewatch::daemon

@@ -1,4 +1,4 @@
-#include "daemon/base/number_words.h"
+#include "daemon/base/numbers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,18 @@ constexpr int kMaxDecimals = 6;
 constexpr double kMinPercent = 0.1;
 
 }  // namespace
+
+std::string percent(double share) {
+  const double value = 100 * share;
+  if (std::isnan(value)) return "-";
+  if (std::abs(value) > 1000) return value > 0 ? "> 1000 %" : "< -1000 %";
+  if (std::abs(value) >= 10) return fmt::format("{:.0f} %", value);
+  return fmt::format("{:.2g} %", value);
+}
+
+std::string percent_1(double share) {
+  return std::isnan(share) ? "-" : fmt::format("{:.1f} %", 100 * share);
+}
 
 std::string with_error(double value, double std_error) {
   const int decimals =

@@ -1,4 +1,4 @@
-#include "daemon/base/json_text.h"
+#include "daemon/base/json.h"
 
 #include <limits>
 #include <string>
@@ -7,11 +7,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/html_text.h"
-#include "daemon/base/json_values.h"
+#include "daemon/base/printable.h"
 
 namespace framewatch::daemon {
-namespace json_text_test {
+namespace json_test {
 
 TEST(JsonText, IsJsonWhateverTheBytesAre) {
   std::string every;
@@ -32,5 +31,5 @@ TEST(HtmlText, NothingOpensATagOrEndsAnAttribute) {
   EXPECT_EQ(html_text("</td><script>\"&"), "&lt;/td&gt;&lt;script&gt;&quot;&amp;");
 }
 
-}  // namespace json_text_test
+}  // namespace json_test
 }  // namespace framewatch::daemon

@@ -1,9 +1,15 @@
-#include "daemon/base/stop_signal.h"
+#include "daemon/base/signals.h"
 
 #include <csignal>
 
 namespace framewatch::daemon {
 namespace {
+
+volatile std::sig_atomic_t reload_signalled = 0;
+
+extern "C" void request_reload(int) {
+  reload_signalled = 1;
+}
 
 volatile std::sig_atomic_t stop_signalled = 0;
 
@@ -12,6 +18,18 @@ extern "C" void request_stop(int) {
 }
 
 }  // namespace
+
+void catch_reload_signal() {
+  struct sigaction action {};
+  action.sa_handler = request_reload;
+  ::sigaction(SIGHUP, &action, nullptr);
+}
+
+bool reload_requested() {
+  if (reload_signalled == 0) return false;
+  reload_signalled = 0;
+  return true;
+}
 
 void catch_stop_signals() {
   std::signal(SIGCHLD, SIG_DFL);  // who ignores it is told of no child's end

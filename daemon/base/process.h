@@ -2,11 +2,20 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace framewatch::daemon {
+
+/// Name of a user of this machine; "uid 1234" without one. May take as long as a directory server.
+std::string user_name(uid_t user);
+/// Name of a group; "gid 1234" without one.
+std::string group_name(gid_t group);
+
+/// 1 to 2^52, by chance: who asks over LCM knows the answer by it.
+std::int64_t random_id();
 
 /// Runs this program, or another, with other arguments in a child process, whose failure does not
 /// harm the caller.
@@ -25,5 +34,16 @@ class ChildProcess {
   explicit ChildProcess(pid_t pid) : pid_(pid) {}
   pid_t pid_;
 };
+
+/// Memory and processor time that this process uses.
+struct ProcessUsage {
+  std::int64_t resident_bytes = 0;
+  double cpu_s = 0;  ///< since its start, system included
+};
+ProcessUsage process_usage();
+
+/// Bytes that this process can still write to the file system of `path`, which need not exist yet;
+/// -1 when it is not known.
+std::int64_t disk_free_bytes(const std::string& path);
 
 }  // namespace framewatch::daemon

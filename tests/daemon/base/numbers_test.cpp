@@ -1,11 +1,11 @@
-#include "daemon/base/number_words.h"
+#include "daemon/base/numbers.h"
 
 #include <gtest/gtest.h>
 
 #include "daemon/base/html_page.h"
 
 namespace framewatch::daemon {
-namespace number_words_test {
+namespace numbers_test {
 
 TEST(NumberWords, AValueHasThePlacesOfItsError) {
   EXPECT_EQ(with_error(25, 0.00078), "25.00000 ± 0.00078");
@@ -25,5 +25,5 @@ TEST(HtmlTable, AColumnOfWordsIsLeftAligned) {
   EXPECT_NE(table.find("<table class=\"short w2\">"), std::string::npos) << table;
 }
 
-}  // namespace number_words_test
+}  // namespace numbers_test
 }  // namespace framewatch::daemon

@@ -1,11 +1,12 @@
-#include "daemon/base/json_text.h"
+#include "daemon/base/json.h"
 
 #include <cmath>
 #include <string_view>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
-#include "daemon/base/utf8.h"
+#include "daemon/base/printable.h"
 
 namespace framewatch::daemon {
 
@@ -29,6 +30,18 @@ std::string json_text(const std::string& text) {
     rest.remove_prefix(bytes);
   }
   return out + '"';
+}
+
+Json json_value(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::string json_value_text(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : "null";
+}
+
+std::string json_line(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace framewatch::daemon
