@@ -1,6 +1,15 @@
 #include "daemon/command_line/command_line.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -8,12 +17,18 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
 #include "daemon/command_line/command_list.h"
-#include "daemon/command_line/fleet_program.h"
 #include "daemon/command_line/option_entries.h"
 
 namespace framewatch::daemon {
-
 namespace {
+
+constexpr const char* kFleetProgram = "framewatch-fleet";
+
+std::string beside_this_program() {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? kFleetProgram : (self.parent_path() / kFleetProgram).string();
+}
 
 void say(const Program& program, const std::string& problem) {
   fmt::print(stderr, "{} {}\n", toned(Tone::bad, program.name + ":", stderr), problem);
@@ -65,6 +80,40 @@ int parse_and_run(const Program& program, int argc, const char* const* argv) {
 }
 
 }  // namespace
+
+/// Whether the program framewatch-fleet does what this command asks: it alone needs NATS and
+/// PostgreSQL, and is a package of its own.
+bool is_of_fleet(std::string_view command) {
+  return command == "fleet" || command == "uplink";
+}
+
+/// Becomes framewatch-fleet, which lies beside this program or in PATH: `framewatch fleet task` as
+/// `framewatch-fleet task`, `framewatch uplink` as `framewatch-fleet uplink`. Returns, with
+/// kBadInput and what is missing said, only when there is no such program.
+int become_fleet_program(int argc, const char* const* argv) {
+  std::string name = kFleetProgram;
+  std::vector<std::string> words(argv + (argv[1] == std::string_view("fleet") ? 2 : 1),
+                                 argv + argc);
+  std::vector<char*> arguments{name.data()};
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(beside_this_program().c_str(), arguments.data());
+  ::execvp(kFleetProgram, arguments.data());
+  return refuse(argv[1], errno == ENOENT
+                             ? "needs the program framewatch-fleet, which is not here "
+                               "(Debian package framewatch-fleet)"
+                             : std::string(kFleetProgram) + ": " + std::strerror(errno));
+}
+
+void add_fleet(CommandList& commands) {
+  commands.add("fleet", "many buildings: archives, a hub, an overview (program framewatch-fleet)")
+      ->footer("`framewatch fleet help` lists its commands.");
+}
+
+void add_uplink(CommandList& commands) {
+  commands.add("uplink", "what `run` keeps, sent to a hub of many buildings (framewatch-fleet)")
+      ->footer("`framewatch uplink --help` lists its options.");
+}
 
 int run_program(const Program& program, int argc, const char* const* argv) {
   prepare_last_resort();

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <sstream>
 #include <string>
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include "daemon/base/exit_code.h"
@@ -10,6 +13,104 @@
 
 namespace framewatch::daemon {
 namespace {
+
+/// Text as man(7) wants it: dashes that can be copied, no line that looks like a request.
+std::string roff(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\\')
+      out += "\\e";
+    else if (c == '-')
+      out += "\\-";
+    else if ((c == '.' || c == '\'') && (out.empty() || out.back() == '\n'))
+      out += std::string("\\&") + c;
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string heading(const std::string& name) {
+  std::string capitals;
+  for (const char c : name)
+    capitals += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return fmt::format(".TH {} 1 \"\" \"framewatch {}\" \"User Commands\"\n", roff(capitals),
+                     FRAMEWATCH_VERSION);
+}
+
+std::string synopsis(const std::string& program, const CommandEntry& command) {
+  std::string out = fmt::format(".B {} {}\n.RI [ OPTION ...]\n", program, command.name);
+  for (const OptionEntry& option : command.options) {
+    if (!option.is_argument) continue;
+    const std::string more = option.takes_many ? " ..." : "";
+    out += option.is_required ? fmt::format(".IR {}{}\n", roff(option.name), more)
+                              : fmt::format(".RI [ {}{} ]\n", roff(option.name), more);
+  }
+  return out;
+}
+
+std::string option_item(const OptionEntry& option) {
+  std::string head = option.is_argument ? fmt::format(".I {}", roff(option.name))
+                                        : fmt::format(".BI \"{}", roff(option.name));
+  if (!option.is_argument) {
+    if (!option.value.empty())
+      head += option.value_may_lack ? fmt::format(" [\" {} ]", roff(option.value))
+                                    : fmt::format(" \" {}", roff(option.value));
+    else
+      head += '"';
+  }
+  std::string out = ".TP\n" + head + "\n" + roff(option.text) + "\n";
+  std::string words;
+  for (const std::string& word : option.choices) words += (words.empty() ? "" : ", ") + word;
+  if (!words.empty() && !option.is_argument) out += fmt::format("({})\n", roff(words));
+  return out;
+}
+
+/// Text first; from "Example" on as it stands.
+std::string footer_sections(const std::string& footer) {
+  std::istringstream lines(footer);
+  std::string line, text, examples;
+  bool in_examples = false;
+  while (std::getline(lines, line)) {
+    if (line.starts_with("Example")) {
+      in_examples = true;
+      const std::size_t colon = line.find(": ");
+      line = colon == std::string::npos ? "" : line.substr(colon + 2);
+      if (line.empty()) continue;
+    }
+    if (in_examples)
+      examples += roff(line.substr(line.find_first_not_of(' '))) + "\n";
+    else
+      text += roff(line) + "\n";
+  }
+  std::string out = text.empty() ? "" : ".SH NOTES\n" + text;
+  if (!examples.empty()) out += ".SH EXAMPLES\n.nf\n" + examples + ".fi\n";
+  return out;
+}
+
+constexpr const char* kStreams =
+    ".SH STANDARD STREAMS\n"
+    "Where a file is read,\n.B \\-\nis standard input, of one file of a command; where one is "
+    "written, standard output, which then\nhas CSV (a report: HTML) and no summary. A file that is "
+    "called so is\n.BR ./\\- .\n";
+
+constexpr const char* kRest =
+    ".SH EXIT STATUS\n"
+    "0: done and holds. 1: done and does not hold. 2: bad usage, configuration or input, or an "
+    "output\nthat did not take everything; no file was written.\n"
+    ".SH ENVIRONMENT\n"
+    ".TP\n.B NO_COLOR\nset to anything: no colours, also on a terminal.\n"
+    ".TP\n.B TZ\nthe zone of local times, which stand beside those in UTC.\n"
+    ".TP\n.B FRAMEWATCH_DATA\nfolder of the ground motions that\n.B framewatch reproduce\nuses.\n"
+    ".SH FILES\n"
+    ".TP\n.I /etc/framewatch/building.toml\nThe building, for the services\n"
+    ".I framewatch.service\nand\n.IR framewatch\\-serve.service ,\nwhich do not start without it.\n"
+    ".TP\n.I /etc/framewatch/framewatch.env\nFurther options of the services.\n"
+    ".TP\n.I /var/lib/framewatch/state\nWhat was learned of the building, carried over a restart.\n"
+    ".TP\n.I /run/framewatch\nWhere the service takes commands\n.RB ( \"framewatch acknowledge\" "
+    ")\n"
+    "from root and from members of the group\n.IR framewatch\\-operators .\n"
+    ".SH SEE ALSO\n.I /usr/share/doc/framewatch/operate.md.gz\n";
 
 struct HelpArguments {
   std::string command;
@@ -38,6 +139,30 @@ int help(const CLI::App& app, const HelpArguments& a) {
 }
 
 }  // namespace
+
+std::string program_man_page(const std::vector<CommandEntry>& commands) {
+  std::string out = heading("framewatch") +
+                    ".SH NAME\nframewatch \\- stiffness and damping of a building from its "
+                    "accelerometers\n"
+                    ".SH SYNOPSIS\n.B framewatch\n.I COMMAND\n.RI [ OPTION ...]\n"
+                    ".SH DESCRIPTION\n"
+                    "Estimates, while a building moves, how stiff and how damped every vertical "
+                    "frame and every floor\npanel is. Each command has a page of its own, such as\n"
+                    ".BR framewatch\\-run (1).\n.SH COMMANDS\n";
+  for (const CommandEntry& command : commands)
+    out += fmt::format(".TP\n.BR framewatch\\-{} (1)\n{}\n", command.name, roff(command.purpose));
+  return out + kStreams + kRest;
+}
+
+std::string command_man_page(const std::string& program, const CommandEntry& command) {
+  std::string name = program + " " + command.name;
+  std::replace(name.begin(), name.end(), ' ', '-');
+  std::string out =
+      heading(name) + fmt::format(".SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}.SH OPTIONS\n", roff(name),
+                                  roff(command.purpose), synopsis(program, command));
+  for (const OptionEntry& option : command.options) out += option_item(option);
+  return out + footer_sections(command.footer) + ".SH SEE ALSO\n.BR framewatch (1)\n";
+}
 
 void add_help(CommandList& commands) {
   HelpArguments& arguments = commands.arguments<HelpArguments>();

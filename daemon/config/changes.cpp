@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/config/keys/fields.h"
+#include "daemon/config/keys/option_table.h"
 #include "daemon/config/keys/section_table.h"
 
 namespace framewatch::daemon {

@@ -8,7 +8,22 @@ namespace {
 using enum OptionType;
 using enum Reach;
 
-const Option kOptions[] = {
+const Option kCommands[] = {
+    {.section = "commands",
+     .key = "directory",
+     .type = text,
+     .meaning =
+         "Directory of the sockets `<prefix>run` and `<prefix>record`. Default: /run/framewatch "
+         "for the service; else $XDG_RUNTIME_DIR/framewatch, or /tmp/framewatch-UID.",
+     .reload = restart,
+     .is_path = true,
+     .target = into<&CommandSettings::directory>},
+};
+
+using enum OptionType;
+using enum Reach;
+
+const Option kLcm[] = {
     {.section = "lcm",
      .key = "url",
      .type = text,
@@ -73,8 +88,12 @@ const Option kOptions[] = {
 
 }  // namespace
 
+std::span<const Option> command_options() {
+  return kCommands;
+}
+
 std::span<const Option> lcm_options() {
-  return kOptions;
+  return kLcm;
 }
 
 }  // namespace framewatch::daemon

@@ -7,6 +7,11 @@
 
 namespace framewatch::daemon {
 
+/// [commands]: how running daemons are told what to do, docs/operate.md.
+struct CommandSettings {
+  std::string directory;  ///< of the sockets; empty: command_directories() says
+};
+
 /// [lcm]: the bus the samples come from and the estimates go to.
 struct LcmSettings {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string>
 
 #include <fmt/core.h>
 
@@ -27,7 +29,7 @@ std::string list_text(const Items& items, Text text_of) {
   return "[" + out + "]";
 }
 
-std::string quoted(const std::string& words) {
+std::string in_quotes(const std::string& words) {
   return "\"" + words + "\"";
 }
 
@@ -38,16 +40,16 @@ std::string default_in_field(const Option& option) {
   const auto converted = option.target.converted;
   switch (option.type) {
     case text:
-      return value.text.empty() ? "" : quoted(value.text);
+      return value.text.empty() ? "" : in_quotes(value.text);
     case choice:
-      return quoted(choices(option).at(static_cast<std::size_t>(value.integer)));
+      return in_quotes(choices(option).at(static_cast<std::size_t>(value.integer)));
     case integer:
     case number:
       return number_text(converted ? value.number / converted(1) : value.number);
     case boolean:
       return value.boolean ? "true" : "false";
     case texts:
-      return list_text(value.texts, quoted);
+      return list_text(value.texts, in_quotes);
     case grid:
       return list_text(value.list, number_text);
     case table:
@@ -57,6 +59,21 @@ std::string default_in_field(const Option& option) {
 }
 
 }  // namespace
+
+void place_files(std::string_view section, const void* owner, std::string_view directory,
+                 void* settings) {
+  for (const Option& o : options()) {
+    if (o.section != section || o.target.owner != owner || !o.is_path) continue;
+    std::string& file = *o.target.text(settings);
+    if (!file.empty()) file = (std::filesystem::path(directory) / file).string();
+  }
+}
+
+void take_reloadable(std::string_view section, const void* owner, const void* from, void* to) {
+  for (const Option& o : options())
+    if (o.section == section && o.target.owner == owner && o.reload && *o.reload != Reach::restart)
+      o.target.copy(from, to);
+}
 
 std::span<const Option> options() {
   static const std::vector<Option> kAll = [] {

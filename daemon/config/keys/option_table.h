@@ -75,4 +75,22 @@ std::string constraint(const Option& option);
 /// Returns the kind of value that the option expects: "a number (kg)", "true or false".
 std::string expected(const Option& option);
 
+namespace fields_detail {
+void place_files(std::string_view section, const void* owner, std::string_view directory,
+                 void* settings);
+void take_reloadable(std::string_view section, const void* owner, const void* from, void* to);
+}  // namespace fields_detail
+
+/// Puts `directory` before the relative paths in the fields of a section's keys.
+template <class Settings>
+void place_files(std::string_view section, std::string_view directory, Settings& settings) {
+  fields_detail::place_files(section, &kOwner<Settings>, directory, &settings);
+}
+
+/// Copies the fields of the section's keys whose change needs no restart.
+template <class Settings>
+void take_reloadable(std::string_view section, const Settings& from, Settings& to) {
+  fields_detail::take_reloadable(section, &kOwner<Settings>, &from, &to);
+}
+
 }  // namespace framewatch::daemon

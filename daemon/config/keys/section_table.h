@@ -2,11 +2,15 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "daemon/config/keys/option_table.h"
 
 namespace framewatch::daemon {
+
+/// docs/configuration.md, made from the option table.
+std::string options_markdown();
 
 /// One section of a file, as the documentation and messages present it.
 struct SectionDescription {

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/log.h"
-#include "daemon/config/gap_model.h"
+#include "daemon/config/learned_files.h"
 
 namespace framewatch::daemon {
 namespace {

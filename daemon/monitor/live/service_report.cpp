@@ -2,7 +2,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/process.h"
-#include "daemon/config/axis_names.h"
+#include "daemon/config/channel_addresses.h"
 
 namespace framewatch::daemon {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/tools/commands/layout_outlook.h"
+#include "daemon/tools/commands/layout_warnings.h"
 
 namespace framewatch::daemon {
 

@@ -1,31 +1,52 @@
 #include "daemon/tools/commands/convert_command.h"
-#include "daemon/config/channel_addresses.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "daemon/base/log.h"
 #include "daemon/base/progress.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/config/config.h"
 #include "daemon/config/header_differences.h"
 #include "daemon/monitor/estimates/estimates_csv.h"
-#include "daemon/tools/commands/lost_headers.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/records/plausibility.h"
+#include "drivers/records/record.h"
 #include "drivers/records/record_csv_writer.h"
 #include "drivers/records/record_merge.h"
 #include "estimator/motion/svd_denoise.h"
 
 namespace framewatch::daemon {
 namespace {
+
+/// What `convert` without a configuration says of headers whose contents `out` has no place for;
+/// empty when there are none. has_names: the columns of `out` have names.
+std::string lost_headers(const drivers::Record& record, const std::string& out, bool has_names) {
+  constexpr std::size_t kNamed = 10;
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < record.headers.size(); ++c) {
+    if (record.headers[c] == drivers::AxisHeader{}) continue;
+    if (count++ < kNamed) names += (names.empty() ? "" : ", ") + record.names[c];
+  }
+  if (count == 0) return {};
+  if (count > kNamed) names += fmt::format(" and {} more", count - kNamed);
+  return fmt::format(
+      "{} does not keep what the headers say of {}: {}direction, place and unit; framewatch init "
+      "--record makes a configuration of the same files, and convert --config holds them against "
+      "one",
+      out, names, has_names ? "" : "name (nodes are numbered in the order of the files), ");
+}
 
 using drivers::AxisAddress;
 using drivers::Problem;

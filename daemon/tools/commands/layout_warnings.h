@@ -4,9 +4,40 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/tools/commands/layout_outlook.h"
 
 namespace framewatch::daemon {
+
+/// What a group of stories is expected to show; relative.
+struct GroupOutlook {
+  std::string parameter;  ///< kx_6to10
+  double window_error, design_error, damping_error;
+};
+
+/// One more measured floor, and what it would gain.
+struct AdvisedFloor {
+  int floor;
+  std::vector<std::string> channels;  ///< what stands there: as on the highest measured floor
+  double least_seen_loss;             ///< of LayoutOutlook, with it
+};
+
+/// What a building with sensors on some floors is expected to show, by its design.
+struct LayoutOutlook {
+  std::vector<int> floors;  ///< measured
+  double shaking_mps2;      ///< rms of the base's motion that this is for
+  bool noise_configured;
+  std::vector<GroupOutlook> groups;
+  /// The loss of stiffness that is seen wherever it happens, relative, and the place that asks for
+  /// so much. Infinite: there are places where none is.
+  double least_seen_loss = 0;
+  int weakest_story = 0;
+  std::vector<AdvisedFloor> advised;  ///< best first
+};
+
+/// config: of groups of stories. advise: floors to name at most.
+LayoutOutlook layout_outlook(const Config& config, int advise);
+
+/// Lines for people, the first one with the heading's column.
+std::string layout_text(const LayoutOutlook& outlook, const estimator::Structure& structure);
 
 /// What a layout of sensors on some floors does not show, or hardly, what its channels contradict
 /// each other in, and what follows from it. config: of groups of stories.

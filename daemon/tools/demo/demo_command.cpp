@@ -1,10 +1,13 @@
 #include "daemon/tools/demo/demo_command.h"
-#include "daemon/config/channel_addresses.h"
 
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
@@ -13,25 +16,85 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/events/place_words.h"
 #include "daemon/page/view/live_view.h"
 #include "daemon/page/web/web_server.h"
 #include "daemon/page/web/web_socket.h"
-#include "daemon/tools/demo/demo_can.h"
-#include "daemon/tools/demo/demo_logs.h"
 #include "daemon/tools/demo/demo_network.h"
 #include "daemon/tools/demo/demo_scenario.h"
 #include "daemon/tools/demo/demo_view.h"
-#include "daemon/tools/simulation/can_output.h"
+#include "daemon/tools/report/report_command.h"
 #include "daemon/tools/simulation/scenario.h"
 #include "daemon/tools/simulation/simulation.h"
 #include "daemon/tools/simulation/simulation_output.h"
 #include "drivers/can/can_source.h"
+#include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/lcm_source.h"
 
 namespace framewatch::daemon {
 namespace {
+
+/// The logs of a demo that is to have a report, in a temporary folder of their own. Without a
+/// report nothing is stored.
+class DemoLogs {
+ public:
+  /// report: the page to write; empty: none.
+  explicit DemoLogs(const std::string& report);
+  ~DemoLogs();
+  DemoLogs(const DemoLogs&) = delete;
+  DemoLogs& operator=(const DemoLogs&) = delete;
+
+  void raw(std::int64_t time_us, const std::string& channel, const void* data, std::size_t size);
+  void estimate(std::int64_t time_us, const std::string& channel,
+                const std::vector<std::uint8_t>& bytes);
+  /// Closes the logs and writes the report about them. building: that was shaken.
+  void write_report(const DemoBuilding& building);
+
+ private:
+  std::string report_, folder_;
+  bool open_ = false;
+  drivers::LcmLogWriter raw_, estimates_;
+};
+
+DemoLogs::DemoLogs(const std::string& report) : report_(report) {
+  if (report_.empty()) return;
+  char name[] = "/tmp/framewatch-demo-XXXXXX";
+  if (const char* made = ::mkdtemp(name)) folder_ = made;
+  open_ = !folder_.empty() && raw_.open(folder_ + "/raw.lcmlog") &&
+          estimates_.open(folder_ + "/estimates.lcmlog");
+  if (!open_) fmt::print(stderr, "framewatch demo: no log in /tmp, so no report\n");
+}
+
+DemoLogs::~DemoLogs() {
+  std::error_code ignored;
+  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+void DemoLogs::raw(std::int64_t time_us, const std::string& channel, const void* data,
+                   std::size_t size) {
+  open_ = open_ && raw_.write(time_us, channel, data, size);
+}
+
+void DemoLogs::estimate(std::int64_t time_us, const std::string& channel,
+                        const std::vector<std::uint8_t>& bytes) {
+  open_ = open_ && estimates_.write(time_us, channel, bytes.data(), bytes.size());
+}
+
+void DemoLogs::write_report(const DemoBuilding& building) {
+  if (report_.empty()) return;
+  const std::string config = folder_ + "/building.toml";
+  std::ofstream(config) << building.config_text;
+  if (!open_ || !raw_.close() || !estimates_.close()) return;
+  ReportArguments a;
+  a.estimates = folder_ + "/estimates.lcmlog";
+  a.config = config;
+  if (raw_.events() > 0) a.raw = {folder_ + "/raw.lcmlog"};
+  a.out = report_;
+  a.title = building.title;
+  if (report(a) != 0) fmt::print(stderr, "framewatch demo: no report\n");
+}
 
 /// Beside LCM's usual port, so that a demo and a live system or another demo do not mix.
 int demo_port() {

@@ -8,6 +8,10 @@
 
 namespace framewatch::daemon {
 
+/// Takes the answers one after the other, each judged by those before it. `take_defaults`: what is
+/// not answered and has a default is not open. The plan is whole when nothing is open.
+InitReading read_answers(const InitAnswers& answers, bool take_defaults, ColumnCache& files);
+
 /// Where a person answers.
 struct Terminal {
   std::function<std::optional<std::string>()> read_line;  ///< empty: there is no more

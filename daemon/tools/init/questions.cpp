@@ -7,8 +7,7 @@
 
 #include "daemon/base/printable.h"
 #include "daemon/tools/init/answer_text.h"
-#include "daemon/tools/init/start_question.h"
-#include "daemon/tools/init/station_answers.h"
+#include "daemon/tools/init/channel_questions.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {

@@ -1,6 +1,6 @@
 #include "daemon/tools/lab/paper_motions.h"
 
-#include "daemon/tools/simulation/recorded_motion.h"
+#include "daemon/tools/simulation/scenario_motion.h"
 
 namespace framewatch::daemon {
 namespace {

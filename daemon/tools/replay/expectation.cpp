@@ -8,7 +8,7 @@
 #include "daemon/base/toml_document.h"
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"
-#include "daemon/config/toml_file.h"
+#include "daemon/config/sections/config_problems.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,6 +13,10 @@
 #include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
+
+/// Why a scenario is too long or its building too large to be simulated; empty when it is not.
+/// Reckoned before anything of that size is made.
+std::string size_problem(const Scenario& scenario);
 
 /// A virtual test: the building and sensors as configured, the true parameters, the ground motion,
 /// and the changes.

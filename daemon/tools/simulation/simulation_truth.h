@@ -1,10 +1,23 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "daemon/tools/simulation/simulation.h"
+#include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
+
+/// {"kind": frame | panel | node | floor | base | channel | building, and "direction", "story",
+/// "frame", "panel", "node", "to_story", "channel", "with_channel" as they apply}.
+nlohmann::ordered_json location_json(const estimator::EffectPlace& place,
+                                     const estimator::Structure& structure,
+                                     const std::vector<estimator::SensorAxis>& axes);
+
+/// {"k3_npm3": {"value": 1e7, "unit": "N/m^3"}, ...}.
+nlohmann::ordered_json parameters_json(const estimator::Effect& effect);
 
 /// What a scenario hides, as JSON (docs/formats.md): the first effect under "hidden", all of them
 /// under "effects", the true stiffness, damping and masses, the sensors' faults.

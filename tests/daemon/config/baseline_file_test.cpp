@@ -1,4 +1,4 @@
-#include "daemon/config/baseline_file.h"
+#include "daemon/config/learned_files.h"
 
 #include <gtest/gtest.h>
 

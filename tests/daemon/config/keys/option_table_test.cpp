@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/config/keys/options_markdown.h"
+#include "daemon/config/keys/section_table.h"
 #include "daemon/config/keys/suggest.h"
 #include "tests/support/temporary.h"
 

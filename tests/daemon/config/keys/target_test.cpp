@@ -5,13 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/config/keys/action_options.h"
 #include "daemon/config/keys/can_options.h"
 #include "daemon/config/keys/channel_options.h"
-#include "daemon/config/keys/command_options.h"
 #include "daemon/config/keys/event_report_options.h"
 #include "daemon/config/keys/fleet_options.h"
-#include "daemon/config/keys/gap_options.h"
 #include "daemon/config/keys/history_options.h"
 #include "daemon/config/keys/lcm_options.h"
 #include "daemon/config/keys/section.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/init/read_answers.h"
+#include "daemon/tools/init/dialogue.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/support/config_fixture.h"
 

@@ -8,7 +8,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/temperature_t.hpp>
 
-#include "daemon/config/baseline_file.h"
+#include "daemon/config/learned_files.h"
 #include "daemon/config/changes.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/tools/replay/replay_command.h"

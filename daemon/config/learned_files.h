@@ -10,6 +10,24 @@
 
 namespace framewatch::daemon {
 
+/// The model that a configuration file describes by its design and effects, as diagnose writes it,
+/// for the building of `config`. Empty with every problem when the file has any, describes another
+/// building, or has no design.
+std::optional<estimator::GapModel> load_gap_model_file(const Config& config,
+                                                       const std::string& path,
+                                                       std::vector<ConfigProblem>& problems);
+
+/// The same of a text; `path` is what messages call it.
+std::optional<estimator::GapModel> parse_gap_model(const Config& config, const std::string& path,
+                                                   const std::string& text,
+                                                   std::vector<ConfigProblem>& problems);
+
+/// Reads the model of [gap] into the configuration if its file exists.
+void load_gap_model(Config& config, std::vector<ConfigProblem>& problems);
+
+/// File name of the segment that shows a gap, in GapSettings::store; empty when none is stored.
+std::string segment_name(const Config& config, std::int64_t gap_id);
+
 /// Baseline as a TOML file, one [[parameter]] each with name, value, std_error, unit and, when they
 /// are known, temperature and values by amplitude; the same baseline gives the same bytes.
 std::string baseline_text(const estimator::Baseline& baseline,
