@@ -18,11 +18,11 @@
 namespace framewatch::daemon {
 namespace {
 
-/// For std::terminate(), which has no arguments.
+/// Global because std::terminate() passes no arguments.
 std::string running_command;
 int status_when_thrown = kBadInput;
 
-/// Not by fmt::print, which throws when stderr takes nothing.
+/// fmt::print throws when stderr cannot be written.
 void say(const std::string& text) {
   const std::string line =
       "framewatch" + (running_command.empty() ? "" : " " + running_command) + ": " + text + "\n";
@@ -49,7 +49,7 @@ extern "C" void clean_up_and_end(int number) {
 }  // namespace
 
 void prepare_last_resort() {
-  // Else the first file that is opened becomes standard output.
+  // Otherwise the first opened file would become standard output.
   for (int stream = 0; stream <= 2; ++stream)
     if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
       (void)::open("/dev/null", stream == 2 ? O_WRONLY : O_RDONLY);

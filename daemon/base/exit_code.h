@@ -1,4 +1,4 @@
-// What a command returns to the shell: 0 when all was well.
+// Exit codes of commands, and the end of the program. A command returns 0 when all is well.
 #pragma once
 
 #include <functional>
@@ -6,25 +6,25 @@
 
 namespace framewatch::daemon {
 
-/// What holds for every command, whatever happens in it: a signal that ends the process, or an
-/// exception that nothing caught, leaves no partial file behind; closed standard streams are never
-/// taken for a file of ours. To be called once, before anything is opened.
+/// Prepares the program's end for every command. A fatal signal or an uncaught exception then
+/// leaves no partial file, and closed standard streams are never reused for the program's files.
+/// Call it once, before opening anything.
 void prepare_last_resort();
 
-/// What the program is at, for the words of run_to_the_end(). A service is to be started again
-/// after a failure.
+/// Sets the command that messages of run_to_the_end() name. `service`: the service manager restarts
+/// the program after a failure.
 void now_runs(const std::string& command, bool service);
 
-/// Does `run`, whose result is the exit status of the program. An exception that nothing caught is
-/// said on stderr with the name of the command; the status is then kBadInput, or kFailed for a
-/// service. So it is when one leaves a thread. Standard output that did not take everything is said
-/// as well; the status is then kBadInput.
+/// Calls `run` and returns the exit status of the program, which is the result of `run`. Prints an
+/// uncaught exception, also of a thread, on stderr with the name of the command and returns
+/// kBadInput, or kFailed for a service. Prints that standard output could not be written and
+/// returns kBadInput.
 int run_to_the_end(const std::function<int()>& run);
 
-inline constexpr int kFailed = 1;    ///< it was done, and something is not well
-inline constexpr int kBadInput = 2;  ///< not done: arguments or input that do not serve
+inline constexpr int kFailed = 1;    ///< the command ran and found or had a failure
+inline constexpr int kBadInput = 2;  ///< the command did not run: invalid arguments or input
 
-/// Prints to standard error why "framewatch `command`" does nothing. Returns kBadInput.
+/// Prints on stderr why "framewatch `command`" refuses to run. Returns kBadInput.
 int refuse(const std::string& command, const std::string& message);
 
 }  // namespace framewatch::daemon

@@ -10,17 +10,17 @@
 
 namespace framewatch::daemon {
 
-/// A number as JSON writes it, with 9 digits; null when it is not finite.
+/// Returns a number as JSON text with 9 digits, or "null" if it is not finite.
 std::string json_number(double value);
-/// A string as JSON writes it, with quotes and escapes; bytes that are no UTF-8 are replaced.
+/// Returns a JSON string with quotes and escapes. Replaces bytes that are not UTF-8.
 std::string json_text(const std::string& text);
 
 using Json = nlohmann::ordered_json;
 
-/// What is larger can be infinite once it is rounded.
+/// Larger values can round to infinity.
 constexpr double kMaxInJson = 1e300;
 
-/// "[1.25,null,3]": values beyond +-kMaxInJson and those that are no numbers are null. format: of
+/// Returns "[1.25,null,3]". Values beyond +-kMaxInJson and NaN become null. `format`: fmt format of
 /// each value.
 template <typename Values>
 std::string json_list(const Values& values, const char* format = "{}") {
@@ -35,13 +35,13 @@ std::string json_list(const Values& values, const char* format = "{}") {
   return "[" + out + "]";
 }
 
-/// A number, or null when it is not finite.
+/// Returns the number, or null if it is not finite.
 Json json_value(double value);
 
-/// The same as text, with all digits that matter.
+/// Returns the number as JSON text with all significant digits, or "null".
 std::string json_value_text(double value);
 
-/// One line; bytes that are not UTF-8 are replaced.
+/// Returns `json` as one line. Replaces bytes that are not UTF-8.
 std::string json_line(const Json& json);
 
 }  // namespace framewatch::daemon

@@ -21,7 +21,7 @@ constexpr std::int32_t kMaxCount = (1 << 28) - 1;
 
 struct FreeRecord {
   void operator()(MSRecord* record) const {
-    record->datasamples = nullptr;  // not its own
+    record->datasamples = nullptr;  // the record does not own them
     msr_free(&record);
   }
 };

@@ -7,14 +7,14 @@
 
 namespace framewatch::daemon {
 
-/// A share as text in per cent with two or three digits: "0.061 %", "12 %", "-" for NaN, "> 1000
-/// %".
+/// Returns a share in percent with two or three digits: "0.061 %", "12 %", "-" for NaN, "> 1000 %".
 std::string percent(double share);
-/// A share in per cent with one decimal: "94.3 %", for shares that are compared with a limit.
+/// Returns a share in percent with one decimal: "94.3 %". For shares that are compared with a
+/// limit.
 std::string percent_1(double share);
 
-/// Median of the values that are not NaN; of two in the middle the upper one. NaN when there are
-/// none.
+/// Returns the median of the values without NaN: the upper one of two middle values. Returns NaN if
+/// no value is left.
 inline double median(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
   if (values.empty()) return NAN;
@@ -23,9 +23,9 @@ inline double median(std::vector<double> values) {
   return *middle;
 }
 
-/// "25.02 ± 0.14": two digits of the error, and the value to the same place.
+/// Returns "25.02 ± 0.14": the error with two digits, the value with the same decimals.
 std::string with_error(double value, double std_error);
-/// "-25.0 ± 0.1": a change in %, to the tenth that no error is below.
+/// Returns "-25.0 ± 0.1": a change in percent. The error is at least 0.1.
 std::string change_with_error(double ratio, double std_error);
 
 }  // namespace framewatch::daemon

@@ -25,7 +25,7 @@ const char* escape_of(Tone tone) {
   return "";
 }
 
-/// Whether it acts on what shows it, instead of being shown.
+/// Returns true for characters that control the display instead of being shown.
 bool controls(std::uint32_t c) {
   return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x61c || c == 0x200e || c == 0x200f ||
          (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069) || c == 0xfeff;

@@ -32,7 +32,7 @@ std::string user_name(uid_t user) {
   passwd* found = nullptr;
   if (::getpwuid_r(user, &entry, memory.data(), memory.size(), &found) == 0 && found != nullptr)
     return printable(found->pw_name, kMaxName);
-  // systemd says how a user is called that exists only while the service does.
+  // A dynamic user of systemd exists only while the service runs; systemd passes its name.
   const char* const own = user == ::geteuid() ? std::getenv("USER") : nullptr;
   return own != nullptr ? printable(own, kMaxName) : fmt::format("uid {}", user);
 }

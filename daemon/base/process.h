@@ -9,25 +9,26 @@
 
 namespace framewatch::daemon {
 
-/// Name of a user of this machine; "uid 1234" without one. May take as long as a directory server.
+/// Returns the name of a user, or "uid 1234". Can block as long as a directory server.
 std::string user_name(uid_t user);
-/// Name of a group; "gid 1234" without one.
+/// Returns the name of a group, or "gid 1234".
 std::string group_name(gid_t group);
 
-/// 1 to 2^52, by chance: who asks over LCM knows the answer by it.
+/// Returns a random number from 1 to 2^52. Identifies a request over LCM, so that its sender finds
+/// the answer.
 std::int64_t random_id();
 
-/// Runs this program, or another, with other arguments in a child process, whose failure does not
-/// harm the caller.
+/// A child process that runs this program or another one. Its failure does not harm the caller.
 class ChildProcess {
  public:
-  /// Empty, with the reason, when it cannot be started. errors: file that gets what it says on its
-  /// standard error; empty: ours.
+  /// Starts `program` with `arguments`. Returns nullopt and sets `error` if that fails. `errors`:
+  /// file for its standard error, or empty for this program's.
   static std::optional<ChildProcess> start(std::vector<std::string> arguments, std::string& error,
                                            const std::string& program = "/proc/self/exe",
                                            const std::string& errors = "");
 
-  /// The exit code of the process, 128 plus the signal that ended it; empty while it runs.
+  /// Returns the exit code of the process, or 128 plus the signal that ended it. Returns nullopt
+  /// while it runs.
   std::optional<int> ended();
 
  private:
@@ -35,15 +36,15 @@ class ChildProcess {
   pid_t pid_;
 };
 
-/// Memory and processor time that this process uses.
+/// Memory and CPU time of this process.
 struct ProcessUsage {
   std::int64_t resident_bytes = 0;
-  double cpu_s = 0;  ///< since its start, system included
+  double cpu_s = 0;  ///< since its start, including system time
 };
 ProcessUsage process_usage();
 
-/// Bytes that this process can still write to the file system of `path`, which need not exist yet;
-/// -1 when it is not known.
+/// Returns the bytes that this process can still write to the file system of `path`, which need not
+/// exist. Returns -1 if unknown.
 std::int64_t disk_free_bytes(const std::string& path);
 
 }  // namespace framewatch::daemon

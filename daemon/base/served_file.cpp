@@ -22,7 +22,7 @@ bool is_servable(const struct stat& file) {
          static_cast<std::uint64_t>(file.st_size) <= kMaxServedBytes;
 }
 
-/// Opens the folder of the last name; false when it is none, or a link.
+/// Opens the folder of the last name. Returns false if it is not a folder, or a link.
 bool open_parent(const std::string& folder, const std::vector<std::string>& names,
                  drivers::Descriptor& parent) {
   if (names.empty() || !std::all_of(names.begin(), names.end(), is_plain_name)) return false;

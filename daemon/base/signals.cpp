@@ -32,7 +32,7 @@ bool reload_requested() {
 }
 
 void catch_stop_signals() {
-  std::signal(SIGCHLD, SIG_DFL);  // who ignores it is told of no child's end
+  std::signal(SIGCHLD, SIG_DFL);  // waitpid() gets no exit status while SIGCHLD is ignored
   struct sigaction action {};
   action.sa_handler = request_stop;
   ::sigaction(SIGINT, &action, nullptr);

@@ -2,14 +2,14 @@
 
 namespace framewatch::daemon {
 
-/// From now on SIGHUP does not end the process.
+/// Installs a handler, so that SIGHUP does not end the process.
 void catch_reload_signal();
-/// Whether a SIGHUP has come since the last call.
+/// Returns true if SIGHUP arrived since the last call.
 bool reload_requested();
 
-/// From now on SIGINT and SIGTERM do not end the process by themselves.
+/// Installs handlers, so that SIGINT and SIGTERM do not end the process.
 void catch_stop_signals();
-/// Whether SIGINT or SIGTERM has come.
+/// Returns true if SIGINT or SIGTERM has arrived.
 bool stop_requested();
 
 }  // namespace framewatch::daemon

@@ -27,7 +27,7 @@ constexpr std::size_t kDamagedKept = 3;
 constexpr const char* kDamagedEnding = ".corrupt-";
 constexpr const char* kOfDatabase[] = {"-wal", "-shm", ""};
 
-/// A name that nothing has yet.
+/// Returns an unused name for the database.
 std::string name_aside(const std::string& database, std::int64_t now_us) {
   const std::string stamp = database + kDamagedEnding + utc_stamp(now_us);
   std::string name = stamp;
@@ -68,7 +68,7 @@ void set_aside_database(const std::string& database, std::int64_t now_us, const 
                         SetAside& out) {
   const std::string name = name_aside(database, now_us);
   out.problem.clear();
-  // The log first: beside a new database the old log would be taken for its own.
+  // Rename the log first: SQLite would apply the old log to a new database.
   for (const char* beside : kOfDatabase) {
     if (std::rename((database + beside).c_str(), (name + beside).c_str()) == 0) continue;
     if (errno == ENOENT) continue;

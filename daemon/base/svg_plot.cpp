@@ -71,7 +71,7 @@ constexpr double kLine = 17;                                        // px, title
 constexpr double kCharacter = 6.1;                                  // px, mean width in the legend
 constexpr double kFar = 1e4;  // px: what lies further outside is cut before it is written
 
-/// The plotting area: pixels of its own, clipped by a nested svg element.
+/// The plotting area. A nested svg element with separate pixel coordinates clips it.
 struct Area {
   SvgAxis x, y;
   double left, top, width, height;

@@ -19,7 +19,7 @@ int column_of(std::string_view line, std::size_t at) {
                  [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// Where the line has one of the texts outside of quotes and comments; npos: nowhere.
+/// Returns where the line has one of the texts outside quotes and comments, or npos.
 template <std::size_t Size>
 std::size_t find_bare(std::string_view line, const std::array<std::string_view, Size>& texts) {
   char quote = 0;
@@ -158,7 +158,8 @@ std::size_t string_length(std::string_view text, std::size_t at) {
   return std::min(end + 1, text.size()) - at;
 }
 
-/// Where a key has more parts (a.b.c) than kMaxKeyParts: reading nests as deep, on the stack.
+/// Returns the place of a key with more parts (a.b.c) than kMaxKeyParts. The parser recurses once
+/// per part, on the stack.
 std::optional<TextPlace> too_deep_key(std::string_view text) {
   TextPlace place{1, 1};
   int dots = 0;

@@ -34,7 +34,8 @@ void say(const Program& program, const std::string& problem) {
   fmt::print(stderr, "{} {}\n", toned(Tone::bad, program.name + ":", stderr), problem);
 }
 
-/// What messages call a command: "run"; "fleet task" of the program "framewatch fleet".
+/// Returns the name of a command in messages: "run", or "fleet task" for the program "framewatch
+/// fleet".
 std::string said_name(const Program& program, const std::string& command) {
   const std::size_t space = program.name.find(' ');
   return space == std::string::npos ? command : program.name.substr(space + 1) + " " + command;
@@ -81,15 +82,15 @@ int parse_and_run(const Program& program, int argc, const char* const* argv) {
 
 }  // namespace
 
-/// Whether the program framewatch-fleet does what this command asks: it alone needs NATS and
-/// PostgreSQL, and is a package of its own.
+/// Returns true for commands of framewatch-fleet, a separate package because it alone needs NATS
+/// and PostgreSQL.
 bool is_of_fleet(std::string_view command) {
   return command == "fleet" || command == "uplink";
 }
 
-/// Becomes framewatch-fleet, which lies beside this program or in PATH: `framewatch fleet task` as
-/// `framewatch-fleet task`, `framewatch uplink` as `framewatch-fleet uplink`. Returns, with
-/// kBadInput and what is missing said, only when there is no such program.
+/// Replaces this process by framewatch-fleet, found beside this program or in PATH: `framewatch
+/// fleet task` runs `framewatch-fleet task`, `framewatch uplink` runs `framewatch-fleet uplink`.
+/// Returns only if there is no such program: prints what is missing and returns kBadInput.
 int become_fleet_program(int argc, const char* const* argv) {
   std::string name = kFleetProgram;
   std::vector<std::string> words(argv + (argv[1] == std::string_view("fleet") ? 2 : 1),

@@ -20,7 +20,7 @@ struct Program {
 /// chosen command, 0 for --help and --version, 2 for bad usage.
 int run_program(const Program& program, int argc, const char* const* argv);
 
-/// The same of the program `framewatch`.
+/// Does the same for the program `framewatch`.
 int run_command_line(int argc, const char* const* argv);
 
 }  // namespace framewatch::daemon

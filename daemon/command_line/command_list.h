@@ -33,14 +33,15 @@ class CommandList {
     return *std::any_cast<Arguments>(&arguments_.emplace_back(Arguments{}));
   }
 
-  /// What happens when `command` is chosen; returns the exit status. It may throw a CLI::ParseError
-  /// for options that do not go together. `prepare` comes before it, when the options are parsed.
+  /// Sets the action of `command`, which returns the exit status. The action may throw
+  /// CLI::ParseError for options that exclude each other. `prepare` runs first, when the options
+  /// are parsed.
   void set_action(CLI::App* command, std::function<int()> action,
                   std::function<void()> prepare = {});
 
   /// This option names files to read: "-" is standard input.
   void reads_files(CLI::Option* option);
-  /// The same of one path, in `prepare`.
+  /// Checks one path, in `prepare`.
   void reads_file(std::string& path);
 
   /// Runs the chosen command, after parsing. Returns its exit status; 2 when none was chosen, or

@@ -66,7 +66,7 @@ std::string option_item(const OptionEntry& option) {
   return out;
 }
 
-/// Text first; from "Example" on as it stands.
+/// Formats the text before "Example" and keeps the rest unchanged.
 std::string footer_sections(const std::string& footer) {
   std::istringstream lines(footer);
   std::string line, text, examples;
@@ -117,7 +117,7 @@ struct HelpArguments {
   bool man = false;
 };
 
-/// What it does not take is found at the end of the program: fmt::print() would throw.
+/// A failed write is found at the end of the program; fmt::print() would throw.
 void print(const std::string& text) {
   (void)std::fputs(text.c_str(), stdout);
 }

@@ -41,12 +41,12 @@ std::string program_man_page(const std::vector<CommandEntry>& commands);
 /// framewatch-<command>(1).
 std::string command_man_page(const std::string& program, const CommandEntry& command);
 
-/// What in the arguments of the program is no command, or no option of the command, each with what
-/// was probably meant. Empty when there is nothing of the kind. `program`: as it is called.
+/// Returns arguments that are neither a command nor an option of the command, each with the
+/// probable meaning. Returns an empty list if there are none. `program`: its name in messages.
 std::vector<std::string> misspelt(const std::string& program,
                                   const std::vector<CommandEntry>& commands,
                                   const std::vector<std::string>& arguments);
-/// The same of a word that should be a command.
+/// Returns the message about a word that should be a command.
 std::string no_such_command(const std::string& program, const std::vector<CommandEntry>& commands,
                             const std::string& word);
 

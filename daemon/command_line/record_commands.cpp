@@ -14,7 +14,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// What is replayed in parts, or as the daemon would take it.
+/// Adds options that replay only parts, or at the daemon's pace.
 void add_parts(CLI::App* command, ReplayArguments& arguments) {
   command->add_flag("--one-pass", arguments.one_pass,
                     "estimate as the samples come, as the daemon does; otherwise the filters are\n"

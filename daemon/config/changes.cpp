@@ -69,7 +69,7 @@ std::string without_numbers(const std::string& key) {
   return out;
 }
 
-/// Of a value, or of a section that is there without any key.
+/// Returns the reach of a key, or of a section without keys.
 Reach reach_of(const std::string& key) {
   const std::string name = without_numbers(key);
   const std::size_t dot = name.rfind('.');

@@ -18,9 +18,9 @@ inline constexpr int kMaxSimulatedFreedoms = 640;
 /// Why a building is too large to be simulated; empty when it is not.
 std::string simulated_size_problem(const estimator::Structure& structure);
 
-/// What is too large about a configuration that has no other problem, reckoned before anything of
-/// that size is made: the memory that its estimation would take, with the key that takes the most,
-/// and a building that [gap] would simulate.
+/// Appends problems of size for a configuration without other problems, before anything that large
+/// is allocated. Checks the memory of the estimation, naming the key that takes the most, and the
+/// building that [gap] would simulate.
 void check_size(const TomlValue& document, const Config& config,
                 std::vector<TextProblem>& problems);
 

@@ -17,7 +17,7 @@ using drivers::LevelKind;
 using estimator::Direction;
 using estimator::SensorAxis;
 
-/// Headers round azimuths to whole degrees, and nobody places a sensor better.
+/// Headers round azimuths to whole degrees; sensors are not placed more precisely.
 constexpr double kSameAzimuth_deg = 5;
 constexpr double kDegrees = 180 / M_PI;
 

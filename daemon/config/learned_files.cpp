@@ -18,7 +18,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// What keeps a model from being of this building; empty when nothing does.
+/// Returns how a model's building differs from this one, or an empty text.
 std::string difference(const Config& config, const Config& model) {
   const estimator::Structure &a = config.pipeline.structure, &b = model.pipeline.structure;
   if (a.stories != b.stories || a.frames_x != b.frames_x || a.frames_y != b.frames_y ||

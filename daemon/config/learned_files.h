@@ -17,7 +17,7 @@ std::optional<estimator::GapModel> load_gap_model_file(const Config& config,
                                                        const std::string& path,
                                                        std::vector<ConfigProblem>& problems);
 
-/// The same of a text; `path` is what messages call it.
+/// Does the same with a text. `path` is its name in messages.
 std::optional<estimator::GapModel> parse_gap_model(const Config& config, const std::string& path,
                                                    const std::string& text,
                                                    std::vector<ConfigProblem>& problems);

@@ -7,7 +7,7 @@
 
 namespace framewatch::daemon {
 
-/// Whether the document describes a virtual test (`framewatch simulate`), not a building alone.
+/// Returns true if the document describes a virtual test (`framewatch simulate`).
 bool is_scenario(const TomlValue& document);
 
 /// The configuration in a document that was parsed already; its path is set, its digest and the

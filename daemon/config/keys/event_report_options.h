@@ -31,7 +31,8 @@ struct ActionSettings {
 struct EventReportSettings {
   std::string directory;
   estimator::ShakingOptions options;
-  /// Of the story height, and of the stiffness before: from here on yellow, or red.
+  /// Limits from which the report is yellow or red: drift relative to the story height, loss
+  /// relative to the earlier stiffness.
   double yellow_drift_ratio = 0.005, red_drift_ratio = 0.015;
   double yellow_loss_ratio = 0.05, red_loss_ratio = 0.2;
   int most_reports = 500;  ///< older ones are removed
@@ -49,7 +50,7 @@ struct FragilitySettings {
   DesignLevel design_level = DesignLevel::moderate;
   DriftLimits drift_limits = DriftLimits::story;
   estimator::PlacardRules rules;
-  /// What follows from all keys: of every story, and where it is from, in words.
+  /// Follows from all keys: the fragility of every story, and its source in words.
   std::vector<estimator::Fragility> by_story = {};
   std::string source = {};
 };

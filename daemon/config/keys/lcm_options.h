@@ -7,9 +7,9 @@
 
 namespace framewatch::daemon {
 
-/// [commands]: how running daemons are told what to do, docs/operate.md.
+/// [commands]: how running daemons receive commands, docs/operate.md.
 struct CommandSettings {
-  std::string directory;  ///< of the sockets; empty: command_directories() says
+  std::string directory;  ///< directory of the sockets; empty uses command_directories()
 };
 
 /// [lcm]: the bus the samples come from and the estimates go to.

@@ -11,7 +11,7 @@
 
 namespace framewatch::daemon {
 
-/// What a change of a key costs while an estimation runs, cheapest first.
+/// Cost of changing a key while an estimation runs, cheapest first.
 enum class Reach {
   settings,  ///< the current window continues with the new settings
   window,    ///< the weights of the rows change, so the window starts again
@@ -28,7 +28,7 @@ struct Option {
   std::string_view shape = "";     ///< shape of a grid or list, for readers: "[story][y][x]"
   std::string default_value = {};  ///< in TOML; empty: options() takes it from the target's field
   std::string paper_default = {};  ///< default for variant = "paper", if it differs
-  bool no_default = false;         ///< optional, and the field's initial value is no default
+  bool no_default = false;         ///< optional, and the field's initial value is not a default
   bool required = false;
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();

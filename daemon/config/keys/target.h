@@ -34,7 +34,7 @@ struct Target {
   KeyValue (*initial)(OptionType) = nullptr;  ///< value of the field in a new settings struct
   void (*store)(const KeyValue&,
                 void* settings) = nullptr;               ///< sets the field of an `owner` struct
-  std::string* (*text)(void* settings) = nullptr;        ///< the field; null if it is no text
+  std::string* (*text)(void* settings) = nullptr;        ///< the field, or null for other types
   void (*copy)(const void* from, void* to) = nullptr;    ///< copies only this field
   bool (*same)(const void* a, const void* b) = nullptr;  ///< true if the fields are equal
   double (*converted)(double) = nullptr;  ///< from the key's unit to the field's; linear

@@ -23,14 +23,14 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Whether a section gives the key as a list, not as a number that stands for all.
+/// Returns true if a section gives the key as a list instead of one number for all.
 bool is_list(const TomlValue& section, std::string_view key) {
   const TomlEntry* entry = section.find(key);
   return entry && entry->value.kind == TomlKind::array;
 }
 
-/// Where the value of item `index` of `count` of a grid begins: the number that stands for all when
-/// it is no list, the section when it lacks the key.
+/// Returns the place of item `index` of `count` of a grid: of the number for all if it is not a
+/// list, or of the section if it lacks the key.
 TextPlace place_in(const TomlValue& section, std::string_view key, std::size_t index,
                    std::size_t count) {
   const TomlEntry* entry = section.find(key);
@@ -47,7 +47,7 @@ void doubt_design(const TomlValue& section, const estimator::Structure& structur
 
 /// Larger buildings would keep a person waiting for dense matrices.
 constexpr int kMaxDegreesOfFreedom = 200;
-/// What a thousand times in stiffness or mass makes of a frequency.
+/// Factor of a frequency for a thousandfold stiffness or mass.
 constexpr double kThousandfold = 31.6;
 
 /// The unit with which the frequency would be what it should be.
@@ -83,7 +83,8 @@ void doubt_frequency(const TomlValue& section, const estimator::Structure& s, do
                                 first_hz, usual, slip_of_frequency(first_hz, allowed))});
 }
 
-/// Of the mode that is lowest without damping. Empty for a large building.
+/// Returns the damping ratio of the mode that is lowest without damping. Returns nullopt for a
+/// large building.
 std::optional<double> first_damping_ratio(const estimator::Structure& s,
                                           const estimator::ParameterTable& table,
                                           const Eigen::VectorXd& design) {

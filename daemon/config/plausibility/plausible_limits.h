@@ -1,4 +1,4 @@
-// What buildings, and models of them on shaking tables, have; outside of it a value is doubted.
+// Plausible ranges of buildings and of shaking-table models. Values outside get a warning.
 #pragma once
 
 namespace framewatch::daemon {
@@ -8,7 +8,7 @@ struct PlausibleRange {
   bool holds(double value) const { return value >= least && value <= most; }
 };
 
-inline constexpr double kMinBuildingStory_m = 2;  ///< lower ones are a model's
+inline constexpr double kMinBuildingStory_m = 2;  ///< lower stories are of a model
 inline constexpr PlausibleRange kStoryHeight_m{0.02, 20};
 inline constexpr PlausibleRange kUsualStoryHeight_m{2, 8};
 inline constexpr PlausibleRange kSpan_m{0.05, 100};

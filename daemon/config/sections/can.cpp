@@ -22,7 +22,7 @@ using drivers::CanTiming;
 using drivers::DbcMessage;
 using drivers::DbcSignal;
 
-/// One sensor node while it is read: its table, if it has one, and the channels it carries.
+/// A sensor node while it is read: its table, if any, and its channels.
 struct CanNodeReading : CanNodeSettings {
   drivers::CanNodeMap map;
   std::optional<ConfigSection> section;
@@ -30,7 +30,7 @@ struct CanNodeReading : CanNodeSettings {
   CanSignal counter, clock;
 };
 
-/// Reads the CAN part of a configuration: buses, sensor nodes, and the signals that are channels.
+/// Reads the CAN part of a configuration: buses, sensor nodes and the signals of channels.
 class CanConfigReader {
  public:
   CanConfigReader(const TomlValue& document, Config& config, std::vector<TextProblem>& problems)
@@ -52,13 +52,14 @@ class CanConfigReader {
   CanNodeReading* node_of(std::size_t channel, std::size_t bus, const std::string& message);
   void read_source(std::size_t channel);
   void add_reading(std::size_t channel, CanNodeReading& node, const CanSignal& found, int sample);
-  /// The message's map at the multiplexor's value that this signal needs.
+  /// Returns the message's map at the multiplexor value of this signal. Creates it if it is
+  /// missing.
   drivers::CanMessageMap& message_map(CanNodeReading& node, const drivers::DbcMessage& m,
                                       const drivers::DbcSignal* multiplexor,
                                       const std::optional<std::int64_t>& at);
 
   void node_problem(CanNodeReading& node, const std::string& key, const std::string& message);
-  /// The frame with the time stamp goes first; a node that carries no channel is left out.
+  /// Moves the frame with the time stamp to the front. Leaves out nodes without channels.
   void finish_node(CanNodeReading& node);
   void check_ids();
   void check_pair(const drivers::CanNodeMap& a, const drivers::CanNodeMap& b);

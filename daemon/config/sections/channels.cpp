@@ -20,7 +20,7 @@ namespace {
 
 using Channels = std::vector<ConfigSection>;
 
-/// Stands for a frame that does not exist; find_problems() skips its place.
+/// Marks a frame that does not exist; find_problems() skips its place.
 constexpr int kNoFrame = -2;
 
 std::string list_of_frames(const estimator::Structure& s) {
@@ -45,14 +45,15 @@ int frame_of(ConfigSection& section, const StructureReading& reading) {
   return kNoFrame;
 }
 
-/// Middle of the frames that are parallel to the other direction, m.
+/// Returns the middle of the frames that are parallel to the other direction, m.
 double middle_m(const estimator::Structure& s, estimator::Direction along) {
   const bool x = along == estimator::Direction::x;
   const int last = x ? s.frames() - 1 : s.n() - 1;
   return (x ? s.m() : s.n()) > 0 ? line_position(s, last) / 2 : 0;
 }
 
-/// A place in plan and where the axis points; empty: a base channel of the whole plan.
+/// Reads the place in plan and the direction of the axis into axis.plan. Leaves it empty for a base
+/// channel of the whole plan.
 void read_plan(ConfigSection& section, const StructureReading& reading,
                estimator::SensorAxis& axis) {
   const bool azimuth = section.given("azimuth_deg");
@@ -77,7 +78,7 @@ void read_plan(ConfigSection& section, const StructureReading& reading,
   axis.plan = place;
 }
 
-/// Story, frame, direction and place, and the rules between them.
+/// Reads story, frame, direction and place, and checks the rules between them.
 void read_place(ConfigSection& section, const StructureReading& reading,
                 estimator::SensorAxis& axis) {
   const bool names_frame = section.value("frame") != nullptr;
@@ -126,7 +127,7 @@ AxisSource read_source(ConfigSection& channel, const std::string& label,
   return source;
 }
 
-/// A force has keys in N where an accelerometer has them in m/s^2.
+/// Reads the keys of a force in N, or refuses them for an accelerometer.
 void read_quantity(ConfigSection& section, estimator::SensorAxis& axis) {
   axis.is_force = section.given("quantity") && section.text("quantity") == "force";
   const auto refuse = [&](std::initializer_list<const char*> keys, const char* rule) {
@@ -177,8 +178,8 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
   channels.push_back(std::move(section));
 }
 
-/// Leaves out verticals that do not show how the base rocks, and all where floor panels are
-/// identified: rocking is known to groups of stories alone.
+/// Leaves out vertical channels that do not show how the base rocks. Leaves out all of them if
+/// floor panels are identified, because only groups of stories include rocking.
 void leave_idle_verticals(const StructureReading& reading, Config& config, Channels& channels) {
   std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
   const std::vector<std::uint8_t> all(axes.size(), 1);
@@ -202,7 +203,7 @@ void leave_idle_verticals(const StructureReading& reading, Config& config, Chann
   }
 }
 
-/// Cross channels are names: known once all channels are.
+/// Resolves the names of cross channels, after all channels are read.
 void find_cross_channels(Config& config, Channels& channels) {
   std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -236,8 +237,7 @@ void check_sources(const Config& config, Channels& channels) {
   }
 }
 
-/// Reports the problems that find_problems() has, at the lines of their channels, without those
-/// that were reported already.
+/// Reports the problems of find_problems() at their channels' lines, except those already reported.
 void check_against_structure(const StructureReading& reading, const Config& config,
                              TextPlace where_missing, Channels& channels,
                              std::vector<TextProblem>& problems) {

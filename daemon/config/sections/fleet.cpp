@@ -23,7 +23,7 @@ bool is_building(const std::string& name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
-/// tls://HOST:PORT, without user, path and blanks: a password would go into logs.
+/// Returns true for tls://HOST:PORT without user, path and blanks. A password would appear in logs.
 bool is_hub(const std::string& url) {
   if (!url.starts_with(kScheme)) return false;
   const std::string rest = url.substr(kScheme.size());

@@ -23,7 +23,8 @@ constexpr std::array<const char*, kDamageStates> kDispersions{
     "slight_dispersion", "moderate_dispersion", "extensive_dispersion", "complete_dispersion"};
 constexpr std::array<const char*, 4> kLevels{"high", "moderate", "low", "pre"};
 
-/// The limits of [fragility] type; empty, with a problem, where there are none.
+/// Returns the limits of the building type and sets its `name`. Returns nullopt and reports a
+/// problem if HAZUS has no limits for it.
 std::optional<std::array<double, kDamageStates>> type_limits(const FragilitySettings& settings,
                                                              int stories, ConfigSection& section,
                                                              std::string& name) {
@@ -44,14 +45,14 @@ std::optional<std::array<double, kDamageStates>> type_limits(const FragilitySett
   return limits;
 }
 
-/// A key's value or default of every story; empty after a problem.
+/// Returns a key's value or default for every story, or an empty list after a problem.
 std::vector<double> of_stories(ConfigSection& section, const char* key, int stories) {
   if (section.given(key)) return section.grid(key, {stories});
   const std::vector<double> all = section.list(key);
   return all.empty() ? all : std::vector<double>(static_cast<std::size_t>(stories), all.front());
 }
 
-/// Medians of every story ascend from slight to complete.
+/// Checks that the medians of every story ascend from slight to complete.
 void check_order(const FragilitySettings& settings, ConfigSection& section) {
   for (std::size_t state = 1; state < kDamageStates; ++state)
     for (std::size_t story = 0; story < settings.by_story.size(); ++story) {
@@ -69,7 +70,7 @@ using Limits = std::array<double, estimator::kDamageStates>;
 
 struct Row {
   std::string_view type;
-  Limits high, moderate, low, pre;  ///< zeros: HAZUS has none
+  Limits high, moderate, low, pre;  ///< zeros if HAZUS has no limits
 };
 
 constexpr Limits kNone{};
@@ -247,7 +248,7 @@ std::optional<FragilitySettings> read_fragility(const TomlValue& document, int s
     for (const char* of_type : {"design_level", "drift_limits"})
       if (section.given(of_type)) section.problem(of_type, "says nothing without a type");
   }
-  if (stories < 1) return out;  // what the structure lacks is a problem of its own
+  if (stories < 1) return out;  // an invalid structure is reported elsewhere
   out.by_story.resize(static_cast<std::size_t>(stories));
   bool whole = true, own = false;
   for (std::size_t state = 0; state < kDamageStates; ++state) {

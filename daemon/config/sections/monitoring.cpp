@@ -10,7 +10,7 @@ namespace {
 constexpr double kLongestFirst_s = 60;
 constexpr std::size_t kMaxPeriods = 6;
 
-/// Rule that the periods break; empty when they are good.
+/// Returns the rule that the periods break, or an empty text.
 std::string problem_of(const std::vector<double>& periods_s) {
   if (periods_s.empty() || periods_s.size() > kMaxPeriods) return "must be 1 to 6 periods";
   if (periods_s.front() > kLongestFirst_s) return "must begin with at most 60 s";
@@ -23,7 +23,7 @@ std::string problem_of(const std::vector<double>& periods_s) {
   return {};
 }
 
-/// Rule that the address breaks; empty when it is good.
+/// Returns the rule that the address breaks, or an empty text.
 std::string problem_of_address(const std::string& url) {
   const auto scheme = url.find("://");
   if (!url.starts_with("http://") && !url.starts_with("https://"))

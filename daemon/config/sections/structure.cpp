@@ -21,7 +21,7 @@ std::vector<double> frame_stiffness(ConfigSection& section, const char* key, int
   return frames > 0 ? section.grid(key, {stories, frames}) : std::vector<double>{};
 }
 
-/// A grid of damping that may be missing.
+/// Returns a grid of damping values, or an empty list if the key is missing or has a problem.
 std::vector<double> damping(ConfigSection& section, const char* key,
                             const std::vector<int>& sizes) {
   if (!section.given(key)) return {};
@@ -33,7 +33,7 @@ std::vector<double> damping(ConfigSection& section, const char* key,
   return section.grid(key, sizes);
 }
 
-/// Of the frames of one story.
+/// Returns the mean stiffness of the frames of one story.
 double mean_frame_stiffness(const Eigen::VectorXd& theta, const estimator::ParameterTable& table,
                             const estimator::Structure& s, int story) {
   double sum = 0;

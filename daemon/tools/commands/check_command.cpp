@@ -110,7 +110,8 @@ std::string effects_markdown() {
   return out;
 }
 
-/// What cannot be read, or is no TOML, is a configuration whose problems are told.
+/// Returns true if the file is a scenario. Unreadable files count as configurations, so their
+/// problems are reported.
 bool names_scenario(const std::string& path) {
   std::string error;
   std::vector<TextProblem> ignored;

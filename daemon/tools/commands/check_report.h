@@ -15,7 +15,7 @@ struct PanelOutlook {
   double shear_ratio;     ///< largest shear deformation over the frames' largest
 };
 
-/// What is known about a valid configuration before the first sample.
+/// Properties of a valid configuration before the first sample.
 struct CheckReport {
   Config config;
   std::vector<std::string> parameters;
@@ -23,7 +23,7 @@ struct CheckReport {
   int hop_rows = 0;
   std::vector<double> design_hz;  ///< natural frequencies, ascending; empty without a design
   std::vector<PanelOutlook> panels;
-  /// What the estimator takes when it starts, and never more; 0 where the C library does not say.
+  /// Memory of the estimator, allocated when it starts. 0 if the C library does not report it.
   std::size_t memory_bytes = 0;
   std::optional<LayoutOutlook> layout;  ///< of a building with sensors on some floors
   std::vector<std::string> warnings;

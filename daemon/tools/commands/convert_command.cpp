@@ -29,8 +29,8 @@
 namespace framewatch::daemon {
 namespace {
 
-/// What `convert` without a configuration says of headers whose contents `out` has no place for;
-/// empty when there are none. has_names: the columns of `out` have names.
+/// Returns the warning of `convert` without a configuration about headers that `out` cannot store.
+/// Empty if there are none. `has_names`: the columns of `out` have names.
 std::string lost_headers(const drivers::Record& record, const std::string& out, bool has_names) {
   constexpr std::size_t kNamed = 10;
   std::string names;
@@ -65,7 +65,7 @@ bool is_log(const std::string& path) {
   return path.ends_with(".lcmlog") || drivers::is_event_log(path);
 }
 
-/// What no file needs to be opened for.
+/// Checks the arguments that need no file.
 void check_arguments(const ConvertArguments& a, Problems& problems) {
   (void)record_options(a.record, problems);
   if (a.inputs.empty()) problems.push_back({"convert", "needs an input and an output file"});
@@ -90,7 +90,7 @@ bool is_force(const Record& record, const std::string& name) {
   return false;
 }
 
-/// Of the channel with that name, or of any accelerometer.
+/// Returns the range of the channel with that name, or of any accelerometer.
 drivers::PlausibleRange range_of(const std::optional<Config>& config, const Record& record,
                                  const std::string& name) {
   drivers::PlausibleRange range;
@@ -202,8 +202,9 @@ std::string list(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-/// Of several windows' estimates those of the main one, which other_windows_s do not name; said on
-/// stderr. Empty when nobody asked for a channel and it is not there.
+/// Returns the channel of the main window among several windows' estimates, which other_windows_s
+/// does not name, and prints it on stderr. Returns an empty text if no channel was asked for and
+/// there is none.
 std::string main_window(const std::vector<std::string>& estimates, const std::string& asked) {
   constexpr std::string_view kMain = "ESTIMATE";
   const auto is_main = [&](const std::string& name) { return name.ends_with(kMain); };

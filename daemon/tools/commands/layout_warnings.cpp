@@ -112,7 +112,7 @@ void free_top(const Config& config, const LayoutOutlook& outlook, std::vector<st
       stories, outlook.floors.back()));
 }
 
-/// Where an axis points, rad, counter-clockwise from +x.
+/// Returns the direction of an axis in rad, counter-clockwise from +x.
 double angle_of(const estimator::Structure& s, const estimator::SensorAxis& axis) {
   if (axis.plan) return axis.plan->angle_rad;
   const auto along = axis.frame >= 0 ? s.direction(axis.frame) : axis.direction;
@@ -135,7 +135,7 @@ void contradictions(const Config& config, std::vector<std::string>& out) {
       if (one.story != two.story || one.vertical || two.vertical ||
           std::abs(across_m(c.structure, one) - across_m(c.structure, two)) > kSameSpot_m)
         continue;
-      // A place that nobody gave is no place that two share.
+      // Two channels without a place do not share one.
       if (!one.plan && one.frame < 0 && !two.plan && two.frame < 0) continue;
       const double apart =
           std::remainder(angle_of(c.structure, one) - angle_of(c.structure, two), 2 * M_PI);

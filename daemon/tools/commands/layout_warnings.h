@@ -7,7 +7,7 @@
 
 namespace framewatch::daemon {
 
-/// What a group of stories is expected to show; relative.
+/// Expected accuracy of a group of stories, relative.
 struct GroupOutlook {
   std::string parameter;  ///< kx_6to10
   double window_error, design_error, damping_error;
@@ -20,7 +20,7 @@ struct AdvisedFloor {
   double least_seen_loss;             ///< of LayoutOutlook, with it
 };
 
-/// What a building with sensors on some floors is expected to show, by its design.
+/// Expected accuracy of a building with sensors on some floors, from its design.
 struct LayoutOutlook {
   std::vector<int> floors;  ///< measured
   double shaking_mps2;      ///< rms of the base's motion that this is for
@@ -39,8 +39,9 @@ LayoutOutlook layout_outlook(const Config& config, int advise);
 /// Lines for people, the first one with the heading's column.
 std::string layout_text(const LayoutOutlook& outlook, const estimator::Structure& structure);
 
-/// What a layout of sensors on some floors does not show, or hardly, what its channels contradict
-/// each other in, and what follows from it. config: of groups of stories.
+/// Returns warnings about a layout with sensors on some floors: what it cannot show or shows
+/// poorly, contradictions between channels, and the consequences. `config` must have groups of
+/// stories.
 std::vector<std::string> layout_warnings(const Config& config, const LayoutOutlook& outlook);
 
 }  // namespace framewatch::daemon

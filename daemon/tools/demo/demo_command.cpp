@@ -36,8 +36,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// The logs of a demo that is to have a report, in a temporary folder of their own. Without a
-/// report nothing is stored.
+/// Logs of a demo with a report, in a temporary folder. Without a report nothing is stored.
 class DemoLogs {
  public:
   /// report: the page to write; empty: none.
@@ -96,7 +95,7 @@ void DemoLogs::write_report(const DemoBuilding& building) {
   if (report(a) != 0) fmt::print(stderr, "framewatch demo: no report\n");
 }
 
-/// Beside LCM's usual port, so that a demo and a live system or another demo do not mix.
+/// Returns a port other than LCM's usual one, so that demos and live systems do not mix.
 int demo_port() {
   return 7700 + static_cast<int>(::getpid() % 1000);
 }

@@ -58,7 +58,7 @@ void keep_user(uid_t user, gid_t group) {
   std::ofstream("/proc/self/gid_map") << fmt::format("{} {} 1", group, group);
 }
 
-/// Asked before LCM is, which prints a page of advice when there is none.
+/// Checked before starting LCM, which prints a page of advice without a route.
 bool has_multicast_route() {
   const drivers::Descriptor socket = datagram_socket();
   sockaddr group{};

@@ -16,7 +16,7 @@ struct DemoNetwork {
 /// namespace.
 DemoNetwork open_demo_network(int port);
 
-/// Whether a message sent on `url` comes back within a second.
+/// Returns true if a message sent on `url` comes back within a second.
 bool lcm_round_trip(const std::string& url);
 
 /// Moves this single-threaded process into its own user and network namespace with a multicast

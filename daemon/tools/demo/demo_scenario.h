@@ -11,8 +11,8 @@
 
 namespace framewatch::daemon {
 
-/// Gives every accelerometer of the demo a CANopen node of its own on the bus of `interface`, at
-/// 500 kbit/s: it samples at the SYNC and sends 24 bits of 1e-5 m/s^2 and a counter.
+/// Gives every accelerometer of the demo a separate CANopen node on the bus of `interface`, at 500
+/// kbit/s. It samples at the SYNC and sends 24 bits of 1e-5 m/s^2 and a counter.
 void put_on_can(Config& config, const std::string& interface);
 
 /// The built-in scenario, configs/scenario_table_two_story.toml.
@@ -20,7 +20,7 @@ Scenario demo_scenario();
 /// configs/scenario_tall_20_stories.toml.
 Scenario tall_demo_scenario();
 
-/// What a demo shakes, and what becomes of it.
+/// The building of a demo and its change.
 struct DemoBuilding {
   Scenario scenario;
   std::string loses;  ///< parameter of which all stories lose stiffness
@@ -35,8 +35,8 @@ DemoBuilding demo_building(int stories);
 /// The scenario's truth with the loss, in the order of the parameters of every story.
 Eigen::VectorXd after_loss(const DemoBuilding& building);
 
-/// What is to be identified, by parameter name, SI: of groups of stories in series. theta: every
-/// story's.
+/// Returns the true values by parameter name, SI, of groups of stories in series. `theta`:
+/// parameters of every story.
 std::map<std::string, double> truth_of(const Scenario& scenario, const Eigen::VectorXd& theta);
 
 }  // namespace framewatch::daemon

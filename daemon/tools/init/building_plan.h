@@ -10,7 +10,7 @@
 
 namespace framewatch::daemon {
 
-/// Where an accelerometer of the building sits and what it measures.
+/// Place and direction of an accelerometer of the building.
 struct Place {
   int story = 0;   ///< 0: base
   int frame = -1;  ///< it rides on; -1: on the base
@@ -33,7 +33,8 @@ std::string place_option(const estimator::Structure& structure, const Place& pla
 /// The only frame that moves along a direction.
 std::optional<int> only_frame(const estimator::Structure& structure, estimator::Direction along);
 
-/// What can become a channel: a column of a record, a signal of a CAN bus, an axis of an LCM node.
+/// A candidate for a channel: a column of a record, a signal of a CAN bus or an axis of an LCM
+/// node.
 struct ChannelColumn {
   std::string name;
   std::string source;               ///< TOML of its `source`; empty: from files only
@@ -41,7 +42,7 @@ struct ChannelColumn {
   drivers::AxisHeader header = {};  ///< what its file says of it
 };
 
-/// Where a channel of a network's station is: at a place in plan, in a direction of the compass.
+/// Place in plan and compass direction of a channel of a network's station.
 struct StationPlace {
   int story = 0;
   std::string why_unused;             ///< empty: it is used
@@ -60,7 +61,8 @@ struct PlannedChannel {
 struct BuildingPlan {
   estimator::Structure structure;
   std::string mass_from;  ///< "7200 kg a floor", for a comment
-  /// Of each story, all frames of a direction together, N/m; empty: no design, or no such frame.
+  /// Stiffness of each story, all frames of a direction together, N/m. Empty without a design or
+  /// such a frame.
   std::vector<double> story_kx_npm, story_ky_npm;
   std::string stiffness_from;  ///< for a comment
   double rate_hz = 100;

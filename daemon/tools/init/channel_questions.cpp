@@ -51,7 +51,7 @@ class StationPlacing {
     }
   }
 
-  /// What a person said of it; empty: nothing.
+  /// Returns the answer about a channel, or an empty text.
   std::string answer_about(const std::string& name) const {
     for (const std::string& text : answers_.channels)
       if (const std::size_t equals = text.rfind('=');
@@ -101,7 +101,7 @@ class StationPlacing {
 
 using estimator::Structure;
 
-/// Where nobody named the channels: "base-x", "F2-Y1".
+/// Returns the default name of a channel: "base-x", "F2-Y1".
 std::string usual_name(const Structure& s, const Place& place) {
   if (place.story == 0) return place.direction == estimator::Direction::x ? "base-x" : "base-y";
   std::string frame = s.frame_name(place.frame);

@@ -1,5 +1,4 @@
-// What is asked of a building whose channels come from a network's files, and how it is read, as
-// parts of InitQuestion.
+// Questions about channels and stations, and readers of their answers, as parts of InitQuestion.
 #pragma once
 
 #include <string>
@@ -13,7 +12,7 @@ bool asks_base(const BuildingDraft& draft);
 std::string take_base(const std::string& text, BuildingDraft& draft, ColumnCache& files);
 std::string understood_base(const BuildingDraft& draft);
 
-/// Of any building; with what headers say of it.
+/// Questions for any building, with hints from headers.
 std::string ask_stories(const BuildingDraft& draft);
 std::string initial_directions(const BuildingDraft& draft);
 
@@ -27,9 +26,8 @@ std::string understood_plan(const BuildingDraft& draft);
 /// neither says is open.
 void place_station(const InitAnswers& answers, InitReading& reading);
 
-/// Gives every place of the building its channel: by NAME=PLACE, by the columns' titles where they
-/// can be read in one way, by number where nobody named them; of a station by its headers. What is
-/// left is open.
+/// Assigns a channel to every place of the building: by NAME=PLACE, by column titles if they have
+/// one reading, by number for unnamed columns, and by headers for a station. The rest stays open.
 void place_channels(const InitAnswers& answers, InitReading& reading);
 
 }  // namespace framewatch::daemon

@@ -212,7 +212,7 @@ std::optional<Place> place_by(const estimator::Structure& s, const TitleWords& w
                        : std::nullopt;
 }
 
-/// The columns of one reading; a place that two columns claim has none.
+/// The column of each place in one reading. A place that two columns claim gets no column.
 struct Assignment {
   Columns column_of_place;
   bool clash = false;
@@ -279,7 +279,7 @@ ColumnPlaces match_columns(const estimator::Structure& s, const std::vector<std:
     return out;
   }
   find_ambiguous(s, titles, out);
-  // What only one reading understands is taken where the other one does not contradict.
+  // Use a title that only one reading understands if the other reading does not contradict.
   for (std::size_t p = 0; p < frames.column_of_place.size(); ++p) {
     const auto& a = frames.column_of_place[p];
     const auto& b = directions.column_of_place[p];

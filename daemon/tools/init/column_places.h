@@ -8,7 +8,7 @@
 
 namespace framewatch::daemon {
 
-/// What the words of a column's title say of its place, before a building is known.
+/// The place in a column's title, before the building is known.
 struct TitleWords {
   std::optional<int> story;  ///< "story 2", "F2", "2nd floor"; "base": 0
   bool is_roof = false;
@@ -21,7 +21,7 @@ struct TitleWords {
 /// Empty when a word or number has no meaning here: such a title says no place.
 std::optional<TitleWords> title_words(const std::string& title);
 
-/// What "y1" in a column's title means, where it is not said otherwise.
+/// Meaning of "y1" in a column's title unless stated otherwise.
 enum class TitleReading {
   frames,      ///< the frame y1, which moves along x
   directions,  ///< the first accelerometer along y; with one a floor: along y on floor 1
@@ -31,8 +31,8 @@ enum class TitleReading {
 struct ColumnPlaces {
   /// Parallel to places_of(): index of the column; empty where no title says it.
   std::vector<std::optional<std::size_t>> column_of_place;
-  /// A column whose title is one place as a frame and another one as a direction, while both
-  /// readings fit the building; empty: there is none.
+  /// A column whose title is one place as a frame and another as a direction while both readings
+  /// fit the building, if any.
   std::optional<std::size_t> ambiguous;
   std::string as_frame, as_direction;  ///< of that column, in words
 };

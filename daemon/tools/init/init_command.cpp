@@ -36,7 +36,7 @@ Terminal terminal() {
           [](const std::string& text) { fmt::print(stderr, "{}", text); }};
 }
 
-/// What `framewatch check` would object to, and what it would doubt.
+/// Problems and warnings of `framewatch check`.
 struct Judgement {
   std::vector<ConfigProblem> problems, doubts;
 };

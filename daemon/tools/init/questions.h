@@ -14,7 +14,7 @@ struct InitQuestion {
   std::string (*ask)(const BuildingDraft&);
   bool (*applies)(const BuildingDraft&);
   std::string (*initial)(const BuildingDraft&);  ///< default; empty: it must be answered
-  /// Why the text is no answer; empty: it was taken.
+  /// Stores the answer. Returns why it is invalid, or an empty text.
   std::string (*take)(const std::string& text, BuildingDraft&, ColumnCache&);
   std::string (*understood)(const BuildingDraft&);  ///< what it was taken for
 };

@@ -27,7 +27,8 @@ bool is_inside(const Level& level) {
   return level.kind != LevelKind::outside && level.kind != LevelKind::unknown;
 }
 
-/// Of the direction nearest to north, of this or its perpendicular: -45 to 45 deg.
+/// Returns the azimuth, of this direction or its perpendicular, that is nearest to north: -45 to 45
+/// deg.
 double folded_deg(double azimuth_deg) {
   return std::remainder(azimuth_deg, 90);
 }
@@ -100,7 +101,7 @@ std::pair<int, int> along_plan(const Side& side, double azimuth_y_deg) {
   return {sign(x), sign(y)};
 }
 
-/// Of a level; empty where this building does not have it, or it is none of it.
+/// Returns the story of a level, or nullopt if this building does not have the level.
 std::optional<int> story_of(const Level& level, const StationPlan& plan) {
   switch (level.kind) {
     case LevelKind::roof:

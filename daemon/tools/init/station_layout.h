@@ -9,7 +9,7 @@
 
 namespace framewatch::daemon {
 
-/// What the headers of a network's files say of a building, before it is described.
+/// The building in the headers of a network's files, before it is described.
 struct StationReading {
   std::vector<drivers::Level> levels;  ///< parallel to the columns
   std::vector<drivers::Side> sides;
@@ -25,7 +25,7 @@ struct StationReading {
 /// Empty when no header says both a level and a horizontal direction.
 std::optional<StationReading> read_station(const std::vector<ChannelColumn>& columns);
 
-/// What of the building says where a channel is.
+/// The parts of the building that place a channel.
 struct StationPlan {
   int stories = 1;
   bool base_is_basement = false;
@@ -33,14 +33,13 @@ struct StationPlan {
   double x_m = 0, y_m = 0;          ///< of the plan; 0: not known
 };
 
-/// Where a column's channel is, and whether it can be used. Empty, with the reason in `why`, when
-/// its header does not say the level or the direction, or a floor that this building does not have.
+/// Returns the place of a column's channel and if it can be used. Returns nullopt and sets `why` if
+/// its header lacks the level or direction, or names a floor that this building does not have.
 std::optional<StationPlace> station_place(const StationReading& reading,
                                           const std::vector<ChannelColumn>& columns, std::size_t c,
                                           const StationPlan& plan, std::string& why);
 
-/// What a column's header says but for its level: direction (x where it says none) and place in
-/// plan.
+/// Returns the direction (x by default) and place in plan of a column's header, without its level.
 StationPlace place_on_floor(const StationReading& reading,
                             const std::vector<ChannelColumn>& columns, std::size_t c,
                             const StationPlan& plan);

@@ -48,7 +48,7 @@ void read_sensor(ConfigSection& s, estimator::SensorModel& model, double& noise_
   for (const std::string& rule : problems(model)) s.problem("", rule);
 }
 
-/// Of what all sensors do only what has no unit of acceleration.
+/// Returns only those errors of all sensors that have no unit of acceleration.
 estimator::SensorModel of_force(const estimator::SensorModel& common) {
   estimator::SensorModel out;
   out.loss_ratio = common.loss_ratio;
@@ -71,7 +71,7 @@ void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& sin
   double common_ratio = 0;
   ConfigSection section("sensors", "sensors", all, {1, 1}, problems);
   read_sensor(section, common, common_ratio);
-  // Empty when the building has a problem of its own: nothing is known of its channels then.
+  // Empty if the building has problems; then its channels are unknown.
   const std::vector<estimator::SensorAxis>& axes = scenario.config.pipeline.axes;
   scenario.sensors.assign(axes.size(), common);
   scenario.noise_ratio.assign(axes.size(), common_ratio);

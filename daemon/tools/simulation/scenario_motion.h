@@ -8,7 +8,7 @@
 
 namespace framewatch::daemon {
 
-/// What a record file does not say itself. Empty or 0: the file must say it.
+/// Format of a record file. For empty or 0, the file must state it.
 struct MotionFileFormat {
   std::string unit;    ///< g, gal or mps2
   double step_s = 0;   ///< of a file without times

@@ -40,7 +40,7 @@ class Simulation {
 
   /// Raw values in axis order, NaN where lost.
   const std::vector<double>& next();
-  /// Whether the motion that next() returned last has diverged, as a softening law can make it.
+  /// Returns true if the last motion of next() has diverged, which a softening law can cause.
   bool collapsed() const { return collapsed_; }
   /// Time of the instant that next() returned last, s.
   double time_s() const { return response_.time_s(); }

@@ -27,7 +27,7 @@ constexpr auto kWorthSleeping = std::chrono::milliseconds(1);
 /// Making and closing a CAN socket takes the kernel milliseconds, and the nodes must not fall
 /// behind.
 constexpr auto kLookAgain = std::chrono::milliseconds(50);
-/// An id nobody has: the sender reads nothing.
+/// Matches an unused id: the sender reads nothing.
 const std::vector<drivers::CanFilter> kNothing{{0x1FFFFFFF, 0x1FFFFFFF, true}};
 
 class CanOutput : public SimulationOutput {

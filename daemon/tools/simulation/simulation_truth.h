@@ -19,8 +19,8 @@ nlohmann::ordered_json location_json(const estimator::EffectPlace& place,
 /// {"k3_npm3": {"value": 1e7, "unit": "N/m^3"}, ...}.
 nlohmann::ordered_json parameters_json(const estimator::Effect& effect);
 
-/// What a scenario hides, as JSON (docs/formats.md): the first effect under "hidden", all of them
-/// under "effects", the true stiffness, damping and masses, the sensors' faults.
+/// Returns the truth of a scenario as JSON (docs/formats.md): the first effect under "hidden", all
+/// effects under "effects", the true stiffness, damping and masses, and the sensors' faults.
 std::string truth_json(const Scenario& scenario);
 
 }  // namespace framewatch::daemon
