@@ -44,12 +44,12 @@ std::string said_name(const Program& program, const std::string& command) {
 int bad_usage(const Program& program, const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
-    say(program, fmt::format("which command? `{} help` lists them", program.name));
+    say(program, fmt::format("no command given; run `{} help` for a list", program.name));
     return kBadInput;
   }
   const std::string name = chosen.front()->get_name();
   refuse(said_name(program, name), error.what());
-  fmt::print(stderr, "`{} help {}` says how it is used\n", program.name, name);
+  fmt::print(stderr, "run `{} help {}` for its usage\n", program.name, name);
   return kBadInput;
 }
 
@@ -100,19 +100,24 @@ int become_fleet_program(int argc, const char* const* argv) {
   arguments.push_back(nullptr);
   ::execv(beside_this_program().c_str(), arguments.data());
   ::execvp(kFleetProgram, arguments.data());
-  return refuse(argv[1], errno == ENOENT
-                             ? "needs the program framewatch-fleet, which is not here "
-                               "(Debian package framewatch-fleet)"
-                             : std::string(kFleetProgram) + ": " + std::strerror(errno));
+  return refuse(
+      argv[1],
+      errno == ENOENT
+          ? "needs the program framewatch-fleet; install the Debian package framewatch-fleet"
+          : std::string(kFleetProgram) + ": " + std::strerror(errno));
 }
 
 void add_fleet(CommandList& commands) {
-  commands.add("fleet", "many buildings: archives, a hub, an overview (program framewatch-fleet)")
+  commands
+      .add("fleet",
+           "manage many buildings: archives, a hub, an overview (program framewatch-fleet)")
       ->footer("`framewatch fleet help` lists its commands.");
 }
 
 void add_uplink(CommandList& commands) {
-  commands.add("uplink", "what `run` keeps, sent to a hub of many buildings (framewatch-fleet)")
+  commands
+      .add("uplink",
+           "send the history of `run` to a hub of many buildings (program framewatch-fleet)")
       ->footer("`framewatch uplink --help` lists its options.");
 }
 
@@ -125,9 +130,9 @@ int run_command_line(int argc, const char* const* argv) {
   if (argc > 1 && is_of_fleet(argv[1])) return become_fleet_program(argc, argv);
   const Program program{
       "framewatch",
-      "framewatch: stiffness and damping of every frame and floor panel of a building,\n"
-      "from its accelerometers, while it moves.",
-      "A file called - is standard input where one is read, standard output where one is written.",
+      "framewatch estimates the stiffness and damping of every frame and floor panel of "
+      "a\nbuilding from its accelerometers, while it moves.",
+      "The file name - is standard input for reading and standard output for writing.",
       {add_demo,     add_run,      add_replay,    add_diff,        add_repair,
        add_refine,   add_diagnose, add_adopt,     add_init,        add_check,
        add_convert,  add_simulate, add_reproduce, add_report,      add_serve,

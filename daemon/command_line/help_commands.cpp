@@ -166,13 +166,13 @@ std::string command_man_page(const std::string& program, const CommandEntry& com
 
 void add_help(CommandList& commands) {
   HelpArguments& arguments = commands.arguments<HelpArguments>();
-  CLI::App* command = commands.add("help", "how the program, or one of its commands, is used");
+  CLI::App* command = commands.add("help", "show how to use the program or a command");
   command->footer(commands.program() == "framewatch" ? "Examples:\n"
                                                        "  framewatch help replay\n"
                                                        "  framewatch help replay --man | man -l -"
                                                      : "");
-  command->add_option("COMMAND", arguments.command, "the command; none: the list of commands");
-  command->add_flag("--man", arguments.man, "as a manual page, in the language of man(7)");
+  command->add_option("COMMAND", arguments.command, "the command; without it, list all commands");
+  command->add_flag("--man", arguments.man, "write a manual page in the format of man(7)");
   commands.set_action(command,
                       [&arguments, command] { return help(*command->get_parent(), arguments); });
 }
@@ -180,12 +180,10 @@ void add_help(CommandList& commands) {
 void add_completion(CommandList& commands) {
   std::string& shell = commands.arguments<std::string>();
   CLI::App* command = commands.add(
-      "completion", "a script by which a shell completes commands, options and their values");
+      "completion", "print a script that completes commands, options and values in a shell");
   command->footer(
-      "The Debian package has them in place already.\n"
-      "Examples:\n"
-      "  source <(framewatch completion bash)\n"
-      "  framewatch completion fish > ~/.config/fish/completions/framewatch.fish");
+      "The Debian package installs these scripts.\nExamples:\n  source <(framewatch completion "
+      "bash)\n  framewatch completion fish > ~/.config/fish/completions/framewatch.fish");
   command->add_option("SHELL", shell, "bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));

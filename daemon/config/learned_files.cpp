@@ -110,9 +110,9 @@ std::optional<estimator::GapModel> parse_gap_model(const Config& config, const s
         if (!read_config(document, model, found)) return;
         const std::string other = difference(config, model);
         if (!other.empty())
-          found.push_back({{}, fmt::format("is no model of {}: it {}", config.path, other)});
+          found.push_back({{}, fmt::format("is not a model of {}: it {}", config.path, other)});
         else if (model.pipeline.design.size() == 0)
-          found.push_back({{}, "is no model: it has no [structure.design]"});
+          found.push_back({{}, "is not a model: [structure.design] is missing"});
       },
       problems);
   if (!good) return std::nullopt;

@@ -120,9 +120,9 @@ void CanConfigReader::read_times(CanNodeReading& node, ConfigSection& section) {
   if (map.timing == CanTiming::sync && map.samples_per_frame > 1)
     section.problem("samples_per_frame", "must be 1 with timing = \"sync\"");
   if (map.timing == CanTiming::sync && section.given("latency_s"))
-    section.problem("latency_s", "with timing = \"sync\" it is delay_s that counts");
+    section.problem("latency_s", "does not apply with timing = \"sync\": use delay_s");
   if (map.timing != CanTiming::sync && section.given("delay_s"))
-    section.problem("delay_s", "without timing = \"sync\" it is latency_s that counts");
+    section.problem("delay_s", "applies only with timing = \"sync\": use latency_s");
 }
 
 void CanConfigReader::read_stamp(const char* key, bool needed, bool allowed, CanSignal& found,
@@ -210,7 +210,7 @@ void CanConfigReader::read_source(std::size_t channel) {
   const std::size_t hash = source.dbc_signal.find('#');
   if ((samples > 1) != (hash != std::string::npos))
     return source_problem(channel, samples > 1
-                                       ? "dbc_signal: # is missing, where the sample's number goes"
+                                       ? "dbc_signal: write # in place of the sample's number"
                                        : "dbc_signal: # is for samples_per_frame > 1");
   const auto nth = [&](int number) {
     std::string text = source.dbc_signal;
@@ -331,9 +331,9 @@ void CanConfigReader::check_pair(const CanNodeMap& a, const CanNodeMap& b) {
       const auto of = std::find_if(nodes_.begin(), nodes_.end(), [&](const CanNodeReading& node) {
         return node.map.name == b.name;
       });
-      return node_problem(*of, "messages",
-                          fmt::format("{} has an id that {} of node {} has too: {:X}", n.name,
-                                      m.name, a.name, n.id));
+      return node_problem(
+          *of, "messages",
+          fmt::format("{} has the same id as {} of node {}: {:X}", n.name, m.name, a.name, n.id));
     }
 }
 

@@ -89,13 +89,14 @@ void read_place(ConfigSection& section, const StructureReading& reading,
                     axis.story > 0
                         ? "is missing: above the base a channel rides on a frame, or has a "
                           "direction or an azimuth, and a place x_m, y_m"
-                        : "is missing: a base channel says direction = \"x\" or \"y\"");
+                        : "is missing: a base channel needs direction = \"x\" or \"y\"");
   if (section.given("direction"))
     axis.direction =
         section.text("direction") == "y" ? estimator::Direction::y : estimator::Direction::x;
   if (!names_frame) return read_plan(section, reading, axis);
   for (const char* key : {"x_m", "y_m", "azimuth_deg"})
-    if (section.given(key)) section.problem(key, "a channel on a frame is where the frame is");
+    if (section.given(key))
+      section.problem(key, "not allowed with frame: the channel's place is the frame's");
   axis.frame =
       section.given("frame") && reading.frames_known ? frame_of(section, reading) : kNoFrame;
   if (axis.frame == kNoFrame) return;
@@ -136,10 +137,10 @@ void read_quantity(ConfigSection& section, estimator::SensorAxis& axis) {
   };
   if (!axis.is_force)
     return refuse({"offset_n", "range_n", "noise_n_per_rthz"},
-                  "is of a force: quantity = \"force\"");
+                  "is a key of forces: set quantity = \"force\"");
   refuse({"offset_mps2", "range_mps2", "noise_mps2_per_rthz"},
          "a force is in N: offset_n, range_n, noise_n_per_rthz");
-  refuse({"tilt_deg", "mount_angle_deg", "cross_channel"}, "is of an accelerometer");
+  refuse({"tilt_deg", "mount_angle_deg", "cross_channel"}, "is a key of accelerometers");
   if (section.given("offset_n")) axis.offset = section.number("offset_n");
   if (section.given("range_n")) axis.range = section.number("range_n");
   if (section.given("noise_n_per_rthz")) axis.noise_density = section.number("noise_n_per_rthz");
@@ -162,12 +163,12 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
       section.problem("name", rule);
   axis.vertical = section.given("direction") && section.text("direction") == "z";
   const auto leave = [&](const char* why) { config.unused.push_back({axis.name, why}); };
-  if (section.given("use") && !section.boolean("use")) return leave("its use is false");
+  if (section.given("use") && !section.boolean("use")) return leave("use = false");
   if (axis.vertical) {
     if (section.good("story")) axis.story = section.integer("story");
     if (axis.story > 0) return leave("it measures vertical motion above the base");
     if (!section.given("x_m") || !section.given("y_m"))
-      return leave("it measures vertical motion, and where in plan (x_m, y_m) is not said");
+      return leave("it measures vertical motion and has no place in plan (x_m, y_m)");
     axis.plan = estimator::PlanPlace{section.number("x_m"), section.number("y_m"), 0};
   } else {
     read_quantity(section, axis);
@@ -192,10 +193,10 @@ void leave_idle_verticals(const StructureReading& reading, Config& config, Chann
   for (std::size_t a = axes.size(); a-- > 0;) {
     if (!axes[a].vertical) continue;
     config.unused.push_back(
-        {axes[a].name, panels ? "it measures vertical motion, and floor panels are identified, for "
-                                "which the base does not rock"
-                              : "it measures vertical motion: how the base rocks is shown by three "
-                                "such channels that are no line, or by two along x or y"});
+        {axes[a].name,
+         panels ? "it measures vertical motion, but with floor panels rocking is not identified"
+                : "it measures vertical motion: rocking needs three such channels that are not in "
+                  "line, or two along x or y"});
     const auto at = static_cast<std::ptrdiff_t>(a);
     axes.erase(axes.begin() + at);
     config.sources.erase(config.sources.begin() + at);

@@ -38,10 +38,10 @@ std::optional<std::array<double, kDamageStates>> type_limits(const FragilitySett
                                                       : hazus_type_of_story(settings.type);
   const auto limits = hazus_limits(name, settings.design_level);
   if (!limits)
-    section.problem("design_level",
-                    fmt::format("HAZUS has no drift limits of {} for \"{}\": it has those of "
-                                "\"low\" and \"pre\"",
-                                name, kLevels[static_cast<std::size_t>(settings.design_level)]));
+    section.problem(
+        "design_level",
+        fmt::format("HAZUS has no drift limits of {} for \"{}\": choose \"low\" or \"pre\"", name,
+                    kLevels[static_cast<std::size_t>(settings.design_level)]));
   return limits;
 }
 
@@ -244,9 +244,9 @@ std::optional<FragilitySettings> read_fragility(const TomlValue& document, int s
   } else if (section.good("type")) {
     for (const char* median : kMedians)
       if (section.good(median) && !section.given(median))
-        section.problem(median, "must be given where there is no type");
+        section.problem(median, "must be given if there is no type");
     for (const char* of_type : {"design_level", "drift_limits"})
-      if (section.given(of_type)) section.problem(of_type, "says nothing without a type");
+      if (section.given(of_type)) section.problem(of_type, "has no effect without a type");
   }
   if (stories < 1) return out;  // an invalid structure is reported elsewhere
   out.by_story.resize(static_cast<std::size_t>(stories));

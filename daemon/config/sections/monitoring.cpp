@@ -31,9 +31,9 @@ std::string problem_of_address(const std::string& url) {
   const auto host = url.substr(scheme + 3, url.find_first_of("/?#", scheme + 3) - scheme - 3);
   if (host.empty()) return "must name a host";
   if (host.find('@') != std::string::npos)
-    return "must not hold a password: put it into webhook_header_file";
+    return "must not contain a password: put it into webhook_header_file";
   if (std::any_of(url.begin(), url.end(), [](char c) { return c <= ' ' || c == 127; }))
-    return "must not hold spaces";
+    return "must not contain spaces";
   return {};
 }
 

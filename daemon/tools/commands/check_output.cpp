@@ -43,7 +43,7 @@ Json channels(const Config& config) {
 /// The drifts at which damage begins, of the stories that differ from the one below.
 std::string fragility_text(const Config& config) {
   if (!config.fragility)
-    return "fragility   none configured: drifts are told, damage is not judged ([fragility] "
+    return "fragility   not configured: reports give drifts without damage (see [fragility] "
            "type)\n";
   const FragilitySettings& f = *config.fragility;
   std::string out = fmt::format("fragility   {}\n", f.source);

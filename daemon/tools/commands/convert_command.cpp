@@ -114,7 +114,7 @@ void look_at(const Record& record, const std::string& path, const std::optional<
     log(LogLevel::warning, doubt);
   const double configured_hz = config ? config->pipeline.options.rate_hz : record.rate_hz;
   if (std::abs(record.rate_hz / configured_hz - 1) > kRateTolerance)
-    log(LogLevel::warning, fmt::format("{}: sampled at {:.4g} Hz, but {} says rate_hz = {:g}", path,
+    log(LogLevel::warning, fmt::format("{}: sampled at {:.4g} Hz, but {} has rate_hz = {:g}", path,
                                        record.rate_hz, config->path, configured_hz));
 }
 
@@ -228,7 +228,7 @@ std::string no_choice(const drivers::LogContents& contents, const std::string& a
   if (contents.accel.empty() && contents.estimates.empty())
     return "holds neither accelerations nor estimates; " + channels;
   if (!asked.empty()) return fmt::format("channel {} is not one to convert; {}", asked, channels);
-  return "say with --channel which to convert; " + channels;
+  return "choose one with --channel; " + channels;
 }
 
 void write_csv(const std::string& out, const Record& record, ProgressLine& progress,
@@ -281,7 +281,7 @@ void convert_log(const ConvertArguments& a, ProgressLine& progress, Problems& pr
                         "--config, --start-us and what says how a record is to be read are for "
                         "records, not for event logs"});
   if (!problems.empty()) return;
-  progress.follow_reading("looking what is in " + in, a.inputs, 1);
+  progress.follow_reading("reading " + in, a.inputs, 1);
   const auto contents = drivers::log_contents(in, problems);
   if (!contents) return;
   const std::string accel = chosen(contents->accel, a.channel);
@@ -292,13 +292,14 @@ void convert_log(const ConvertArguments& a, ProgressLine& progress, Problems& pr
     return;
   }
   if (!estimates.empty()) {
-    if (a.denoise) problems.push_back({"--denoise", "is for accelerations; this log has none"});
+    if (a.denoise)
+      problems.push_back({"--denoise", "needs accelerations; this log has no accelerations"});
     if (!problems.empty()) return;
     progress.follow_reading("converting " + in, a.inputs, 2);
     write_estimates_csv(in, estimates, a.boxplot, a.out, problems);
     return;
   }
-  if (a.boxplot) problems.push_back({"--boxplot", "is for estimates; this log has none"});
+  if (a.boxplot) problems.push_back({"--boxplot", "needs estimates; this log has no estimates"});
   progress.follow_reading("reading " + in, a.inputs, 1);
   auto record = drivers::read_accel_log(in, accel, problems);
   Problems impossible;  // a log cannot be mended by hand: it is converted, and told

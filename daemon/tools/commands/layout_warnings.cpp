@@ -59,9 +59,8 @@ void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
   const estimator::PipelineConfig& c = config.pipeline;
   for (const GroupOutlook& g : outlook.groups)
     if (!std::isfinite(g.window_error))
-      out.push_back(
-          fmt::format("{}: this layout shows nothing of it: no value of it will ever be published",
-                      g.parameter));
+      out.push_back(fmt::format(
+          "{}: this layout does not show it: no value of it will be published", g.parameter));
     else if (!(g.window_error < c.options.max_error_k))
       out.push_back(fmt::format(
           "{}: its standard error will be {:.2g} %, above estimator.max_error_k = {:g} %: no value "
@@ -140,16 +139,16 @@ void contradictions(const Config& config, std::vector<std::string>& out) {
       const double apart =
           std::remainder(angle_of(c.structure, one) - angle_of(c.structure, two), 2 * M_PI);
       if (M_PI - std::abs(apart) < kParallel_rad)
-        out.push_back(fmt::format(
-            "channels '{}' and '{}' measure one motion of floor {} with opposite signs: they "
-            "contradict each other unless one is mounted backwards; if none is, an azimuth is "
-            "wrong, and their mean is no motion at all",
-            one.name, two.name, one.story));
+        out.push_back(
+            fmt::format("channels '{}' and '{}' measure one motion of floor {} with opposite "
+                        "signs: they contradict each other unless one is mounted backwards; "
+                        "otherwise an azimuth is wrong, and their mean is meaningless",
+                        one.name, two.name, one.story));
       else if (std::abs(apart) < kParallel_rad)
-        out.push_back(fmt::format(
-            "channels '{}' and '{}' measure one motion of floor {}: their mean is used; where they "
-            "contradict each other, nothing here can tell which one is right",
-            one.name, two.name, one.story));
+        out.push_back(
+            fmt::format("channels '{}' and '{}' measure one motion of floor {}: their mean is "
+                        "used; if they contradict each other, it is unknown which one is right",
+                        one.name, two.name, one.story));
     }
 }
 

@@ -90,7 +90,7 @@ MachineCheck check_multicast(const LcmSettings& settings) {
     check.found += fmt::format(", delivered in {:.1f} ms",
                                1e-3 * static_cast<double>(steady_clock_us() - began_us));
   else
-    check.remedy = "what is sent does not come back: a firewall, or a route that leads elsewhere";
+    check.remedy = "messages do not come back: check the firewall and the multicast route";
   return check;
 }
 
@@ -106,7 +106,9 @@ MachineCheck check_buffer(const LcmSettings& settings) {
   MachineCheck check{got >= wanted, "buffers", fmt::format("{} of {} bytes", got, wanted)};
   if (!check.good)
     check.remedy = fmt::format(
-        "a burst is lost: sysctl net.core.rmem_max={} (for good: a file in /etc/sysctl.d)", wanted);
+        "bursts are lost: set sysctl net.core.rmem_max={} (permanently: in a file in "
+        "/etc/sysctl.d)",
+        wanted);
   return check;
 }
 
@@ -116,11 +118,9 @@ MachineCheck check_clock() {
   MachineCheck check{synchronised, "clock",
                      synchronised
                          ? fmt::format("synchronised, off by {} us at most", clock.maxerror)
-                         : "nobody keeps it right"};
+                         : "no time synchronization is running"};
   if (!synchronised)
-    check.remedy =
-        "apt install chrony (or systemd-timesyncd): CAN samples get their time from it, and people "
-        "read it";
+    check.remedy = "install chrony or systemd-timesyncd: CAN samples are stamped with this clock";
   return check;
 }
 
@@ -160,7 +160,8 @@ MachineCheck check_estimate() {
                      fmt::format("{} frames of a virtual building within {:.2f} %, {:.0f} times as "
                                  "fast as they come, {}",
                                  found, 100 * worst, speed, instruction_set())};
-  if (!right) check.remedy = "the program computes wrongly on this machine: do not use it here";
+  if (!right)
+    check.remedy = "the program computes wrong results on this machine: do not use it here";
   if (right && !check.good) check.remedy = "the machine is too slow or too busy";
   return check;
 }
@@ -176,7 +177,7 @@ MachineCheck check_disk(const std::string& directory) {
                                  1e-9 * static_cast<double>(left), seconds)};
   if (!problem.empty()) {
     check.found = directory;
-    check.remedy = problem + ": state and records need a directory that can be written";
+    check.remedy = problem + ": state and records need a writable directory";
   } else if (left < kLittleDisk_bytes) {
     check.remedy = "make room: less than 1 GB is left";
   } else if (seconds > kSlowDisk_s) {

@@ -136,7 +136,7 @@ void introduce(const DemoBuilding& building, const DemoNetwork& network, double 
   if (!network.in_process) fmt::print("Listen with LCM_DEFAULT_URL='{}'.\n", network.url);
   if (!page.empty()) fmt::print("\n  Open {}\n\n", page);
   if (seconds > kDropAt_s)
-    fmt::print("At {:g} s {} loses {:g} % of its stiffness: see where it shows.\n", kDropAt_s,
+    fmt::print("At {:g} s {} loses {:g} % of its stiffness: watch where it shows.\n", kDropAt_s,
                element_words(building.loses), 100 * building.loss_ratio);
   std::fflush(stdout);
 }

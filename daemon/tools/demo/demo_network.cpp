@@ -104,7 +104,7 @@ DemoNetwork open_demo_network(int port) {
   std::string error;
   if (enter_private_network(error) && lcm_round_trip(url))
     return {url, false,
-            "LCM over UDP multicast in a network namespace of its own: this machine has no "
+            "LCM over UDP multicast in a private network namespace, because this machine has no "
             "multicast route"};
   return {"memq://", true,
           fmt::format("LCM inside one process (memq): this machine has no multicast route and "

@@ -74,7 +74,8 @@ std::string frame_stiffness(const std::vector<double>& stories, const std::vecto
 
 std::string head(const BuildingPlan& p) {
   std::string out =
-      "# Made by `framewatch init`. Change what is not so, then: framewatch check this file.\n"
+      "# Made by `framewatch init`. Correct it if needed, then run `framewatch check` on this "
+      "file.\n"
       "# What to look at first: node_mass_kg, which sets the scale of every stiffness, and where "
       "each\n"
       "# [[channel]] is. docs/configuration.md has every key.\n";

@@ -203,7 +203,7 @@ InitReading read_answers(const InitAnswers& answers, bool take_defaults, ColumnC
     const bool answered = answer != answers.by_option.end();
     if (!question.applies(d)) {
       if (answered && take_defaults)
-        out.open.push_back({question.option, "", "", "does not apply to what else was said", {}});
+        out.open.push_back({question.option, "", "", "does not apply with the other answers", {}});
       continue;
     }
     const std::string initial = question.initial(d);

@@ -212,7 +212,7 @@ std::string take_mass(const std::string& text, Draft& d, ColumnCache&) {
   if (quantity->unit == "kg/m^2") quantity->unit = "kg/m2";
   if (quantity->unit.empty()) quantity->unit = "kg";
   if (quantity->unit != "kg" && quantity->unit != "t" && quantity->unit != "kg/m2")
-    return fmt::format("{} is no unit of it: kg, t or kg/m2", quantity->unit);
+    return fmt::format("unknown unit {}: use kg, t or kg/m2", quantity->unit);
   d.mass_unit = quantity->unit;
   d.area_m2 = floor_area_m2(d.plan.structure) > 0 ? std::optional(floor_area_m2(d.plan.structure))
                                                   : std::nullopt;

@@ -96,10 +96,9 @@ TEST_F(Usage, FleetIsAProgramOfItsOwn) {
       "cp $F framewatch; for c in fleet uplink; do PATH=/usr/bin:/bin ./framewatch $c x; done");
   EXPECT_EQ(alone.status, kBadInput);
   EXPECT_EQ(alone.err,
-            "framewatch fleet: needs the program framewatch-fleet, which is not here (Debian "
-            "package framewatch-fleet)\n"
-            "framewatch uplink: needs the program framewatch-fleet, which is not here (Debian "
-            "package framewatch-fleet)\n");
+            "framewatch fleet: needs the program framewatch-fleet; install the Debian package "
+            "framewatch-fleet\nframewatch uplink: needs the program framewatch-fleet; install the "
+            "Debian package framewatch-fleet\n");
   // Whatever lies beside the program, or in PATH, gets the words that follow.
   test::write_file(directory_.path("framewatch-fleet"), "#!/bin/sh\necho \"$@\"\n");
   EXPECT_EQ(shell("chmod +x framewatch-fleet; ./framewatch fleet task m 1").out, "task m 1\n");
