@@ -89,25 +89,26 @@ std::string footer_sections(const std::string& footer) {
 }
 
 constexpr const char* kStreams =
-    ".SH STANDARD STREAMS\n"
-    "Where a file is read,\n.B \\-\nis standard input, of one file of a command; where one is "
-    "written, standard output, which then\nhas CSV (a report: HTML) and no summary. A file that is "
-    "called so is\n.BR ./\\- .\n";
+    ".SH STANDARD STREAMS\nThe file name\n.B \\-\nis standard input for reading, for one file of a "
+    "command, and standard output for writing.\nStandard output then has CSV (for a report: HTML) "
+    "and no summary. A file with this name is\n.BR ./\\- .\n";
 
 constexpr const char* kRest =
     ".SH EXIT STATUS\n"
-    "0: done and holds. 1: done and does not hold. 2: bad usage, configuration or input, or an "
-    "output\nthat did not take everything; no file was written.\n"
+    "0: done and good. 1: done and not good. 2: bad usage, configuration or input, or an output\n"
+    "that cannot be written; then no file is left.\n"
     ".SH ENVIRONMENT\n"
-    ".TP\n.B NO_COLOR\nset to anything: no colours, also on a terminal.\n"
-    ".TP\n.B TZ\nthe zone of local times, which stand beside those in UTC.\n"
-    ".TP\n.B FRAMEWATCH_DATA\nfolder of the ground motions that\n.B framewatch reproduce\nuses.\n"
+    ".TP\n.B NO_COLOR\nAny value: no colors on a terminal.\n"
+    ".TP\n.B TZ\nTime zone of the local times beside UTC.\n"
+    ".TP\n.B FRAMEWATCH_DATA\nFolder of the ground motions for\n.BR " framewatch reproduce
+    " .\n"
     ".SH FILES\n"
     ".TP\n.I /etc/framewatch/building.toml\nThe building, for the services\n"
     ".I framewatch.service\nand\n.IR framewatch\\-serve.service ,\nwhich do not start without it.\n"
     ".TP\n.I /etc/framewatch/framewatch.env\nFurther options of the services.\n"
-    ".TP\n.I /var/lib/framewatch/state\nWhat was learned of the building, carried over a restart.\n"
-    ".TP\n.I /run/framewatch\nWhere the service takes commands\n.RB ( \"framewatch acknowledge\" "
+    ".TP\n.I /var/lib/framewatch/state\nThe learned state of the building, kept over a restart.\n"
+    ".TP\n.I /run/framewatch\nSockets where the service accepts commands\n.RB ( \"framewatch "
+    "acknowledge\" "
     ")\n"
     "from root and from members of the group\n.IR framewatch\\-operators .\n"
     ".SH SEE ALSO\n.I /usr/share/doc/framewatch/operate.md.gz\n";
@@ -146,8 +147,8 @@ std::string program_man_page(const std::vector<CommandEntry>& commands) {
                     "accelerometers\n"
                     ".SH SYNOPSIS\n.B framewatch\n.I COMMAND\n.RI [ OPTION ...]\n"
                     ".SH DESCRIPTION\n"
-                    "Estimates, while a building moves, how stiff and how damped every vertical "
-                    "frame and every floor\npanel is. Each command has a page of its own, such as\n"
+                    "Estimates the stiffness and damping of every vertical frame and floor panel "
+                    "of a building\nwhile it moves. Each command has a manual page, such as\n"
                     ".BR framewatch\\-run (1).\n.SH COMMANDS\n";
   for (const CommandEntry& command : commands)
     out += fmt::format(".TP\n.BR framewatch\\-{} (1)\n{}\n", command.name, roff(command.purpose));

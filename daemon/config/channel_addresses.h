@@ -8,7 +8,7 @@
 
 namespace framewatch::daemon {
 
-/// Names of all channels, in the order of the configuration.
+/// Returns the names of all channels in the order of the configuration.
 inline std::vector<std::string> axis_names(const Config& config) {
   std::vector<std::string> out;
   for (const estimator::SensorAxis& axis : config.pipeline.axes) out.push_back(axis.name);

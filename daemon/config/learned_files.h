@@ -10,9 +10,9 @@
 
 namespace framewatch::daemon {
 
-/// The model that a configuration file describes by its design and effects, as diagnose writes it,
-/// for the building of `config`. Empty with every problem when the file has any, describes another
-/// building, or has no design.
+/// Reads the model in the design and effects of a configuration file, as diagnose writes it, for
+/// the building of `config`. Returns nullopt and appends every problem if the file is invalid,
+/// describes another building, or has no design.
 std::optional<estimator::GapModel> load_gap_model_file(const Config& config,
                                                        const std::string& path,
                                                        std::vector<ConfigProblem>& problems);
@@ -25,20 +25,21 @@ std::optional<estimator::GapModel> parse_gap_model(const Config& config, const s
 /// Reads the model of [gap] into the configuration if its file exists.
 void load_gap_model(Config& config, std::vector<ConfigProblem>& problems);
 
-/// File name of the segment that shows a gap, in GapSettings::store; empty when none is stored.
+/// Returns the file of the segment that shows a gap, in GapSettings::store. Empty if segments are
+/// not stored.
 std::string segment_name(const Config& config, std::int64_t gap_id);
 
-/// Baseline as a TOML file, one [[parameter]] each with name, value, std_error, unit and, when they
-/// are known, temperature and values by amplitude; the same baseline gives the same bytes.
+/// Returns a baseline as TOML, one [[parameter]] each with name, value, std_error, unit and, if
+/// known, temperature and values by amplitude. Equal baselines give equal bytes.
 std::string baseline_text(const estimator::Baseline& baseline,
                           const estimator::ParameterTable& table);
 
-/// `text`, extended by the parameters that `baseline` has and `written` lacks.
+/// Returns `text` with the parameters appended that `baseline` has and `written` lacks.
 std::string extended_baseline_text(const std::string& text, const estimator::Baseline& written,
                                    const estimator::Baseline& baseline,
                                    const estimator::ParameterTable& table);
 
-/// Reads one for this building. Empty optional and every problem at once when it is not valid.
+/// Reads a baseline for this building. Returns nullopt and appends every problem if it is invalid.
 std::optional<estimator::Baseline> load_baseline(const std::string& path,
                                                  const estimator::ParameterTable& table,
                                                  std::vector<ConfigProblem>& problems);

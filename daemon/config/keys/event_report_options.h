@@ -9,25 +9,25 @@
 
 namespace framewatch::daemon {
 
-/// [actions]: what `framewatch run` does when an event is raised, changes or is cleared,
+/// [actions]: notifications of `framewatch run` when an event is raised, changes or is cleared,
 /// docs/actions.md.
 struct ActionSettings {
-  int severity = 1;                ///< least event_t::severity of delivered events
-  std::vector<std::string> kinds;  ///< of delivered events; empty: all
-  double changed_every_s = 60;  ///< least time between two deliveries of the same event's changes
-  int per_minute = 12;          ///< most deliveries by the command, and by the webhook
+  int severity = 1;                ///< lowest event_t::severity of delivered events
+  std::vector<std::string> kinds;  ///< kinds of delivered events; empty for all
+  double changed_every_s = 60;     ///< shortest time between two deliveries of an event's changes
+  int per_minute = 12;             ///< most deliveries by the command, and by the webhook
 
-  std::vector<std::string> command;  ///< program and arguments; empty: none
+  std::vector<std::string> command;  ///< program and arguments; empty for no command
   double command_timeout_s = 30;
 
-  std::string webhook;               ///< URL; empty: none
-  std::string webhook_header_file;   ///< further headers, one a line; empty: none
-  std::string webhook_ca_file;       ///< certificates that are trusted; empty: the system's
-  double webhook_timeout_s = 10;     ///< of one try
+  std::string webhook;               ///< URL; empty for no webhook
+  std::string webhook_header_file;   ///< file with further headers, one per line
+  std::string webhook_ca_file;       ///< trusted certificates; empty for the system's
+  double webhook_timeout_s = 10;     ///< timeout of one attempt
   double webhook_patience_s = 3600;  ///< a failed delivery is repeated for this long
 };
 
-/// [event_report]: what is written after strong motion, docs/operate.md.
+/// [event_report]: reports after strong motion, docs/operate.md.
 struct EventReportSettings {
   std::string directory;
   estimator::ShakingOptions options;
@@ -40,11 +40,11 @@ struct EventReportSettings {
 
 enum class DesignLevel { high, moderate, low, pre };
 
-/// story: limits of a single story's drift. height: HAZUS' lower limits for the average drift of
-/// mid-rise and high-rise buildings, by the number of stories.
+/// story uses limits of a single story's drift. height uses HAZUS' lower limits of the average
+/// drift of mid-rise and high-rise buildings, by the number of stories.
 enum class DriftLimits { story, height };
 
-/// [fragility]: what a peak drift may have done to a story, docs/operate.md.
+/// [fragility]: probable damage of a story by its peak drift, docs/operate.md.
 struct FragilitySettings {
   std::string type;  ///< HAZUS' building type, "C1" or "C1M"; empty: every median is given
   DesignLevel design_level = DesignLevel::moderate;

@@ -9,7 +9,7 @@
 namespace framewatch::daemon {
 
 /// Returns HAZUS drift ratios at the threshold of slight, moderate, extensive and complete
-/// structural damage. `type` includes its height ("C1L") unless it has none ("W1"). Returns nullopt
+/// structural damage. `type` includes the height class, if it has one: "C1L", "W1". Returns nullopt
 /// if HAZUS has no such type at that design level. Source: FEMA, HAZUS-MH MR4 Technical Manual,
 /// Tables 5.9a (high), b (moderate), c (low) and d (pre-code).
 std::optional<std::array<double, estimator::kDamageStates>> hazus_limits(const std::string& type,

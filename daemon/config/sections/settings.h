@@ -27,7 +27,7 @@ struct UnusedChannel {
 struct Config {
   std::string path;
   std::string sha256;
-  /// SHA-256 of the values of each section of the file, by its name ("channel": of all channels).
+  /// SHA-256 of the values of each section, by its name ("channel" covers all channels).
   std::map<std::string, std::string> section_sha256;
   estimator::PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes

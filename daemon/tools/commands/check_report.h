@@ -9,7 +9,7 @@
 
 namespace framewatch::daemon {
 
-/// Identifiability of one floor panel under ground motion, by the design.
+/// Identifiability of a floor panel under ground motion, from the design.
 struct PanelOutlook {
   std::string parameter;  ///< Gk_2_x1y1
   double shear_ratio;     ///< largest shear deformation over the frames' largest
@@ -25,16 +25,16 @@ struct CheckReport {
   std::vector<PanelOutlook> panels;
   /// Memory of the estimator, allocated when it starts. 0 if the C library does not report it.
   std::size_t memory_bytes = 0;
-  std::optional<LayoutOutlook> layout;  ///< of a building with sensors on some floors
+  std::optional<LayoutOutlook> layout;  ///< set for a building with sensors on some floors
   std::vector<std::string> warnings;
 };
 
-/// advise: places for further sensors to name at most.
+/// Reports on a valid configuration. `advise`: largest number of places for further sensors.
 CheckReport make_check_report(const Config& config, int advise = 0);
 
-/// For people, several lines, without the warnings.
+/// Returns several lines for people, without the warnings.
 std::string to_text(const CheckReport& report);
-/// For programs, schema framewatch.check/1. `report` empty: the problems are why.
+/// Returns JSON of schema framewatch.check/1. `report` is empty if there are problems.
 std::string to_json(const std::string& path, const std::optional<CheckReport>& report,
                     const std::vector<ConfigProblem>& problems);
 

@@ -30,7 +30,7 @@ namespace framewatch::daemon {
 namespace {
 
 /// Returns the warning of `convert` without a configuration about headers that `out` cannot store.
-/// Empty if there are none. `has_names`: the columns of `out` have names.
+/// Empty if nothing is lost. `has_names`: the columns of `out` have names.
 std::string lost_headers(const drivers::Record& record, const std::string& out, bool has_names) {
   constexpr std::size_t kNamed = 10;
   std::string names;
@@ -203,8 +203,8 @@ std::string list(const std::vector<std::string>& names) {
 }
 
 /// Returns the channel of the main window among several windows' estimates, which other_windows_s
-/// does not name, and prints it on stderr. Returns an empty text if no channel was asked for and
-/// there is none.
+/// does not name, and prints it on stderr. Returns an empty text if that channel is missing
+/// and `asked` is empty.
 std::string main_window(const std::vector<std::string>& estimates, const std::string& asked) {
   constexpr std::string_view kMain = "ESTIMATE";
   const auto is_main = [&](const std::string& name) { return name.ends_with(kMain); };

@@ -13,30 +13,31 @@ struct GroupOutlook {
   double window_error, design_error, damping_error;
 };
 
-/// One more measured floor, and what it would gain.
+/// A further measured floor and its gain.
 struct AdvisedFloor {
   int floor;
-  std::vector<std::string> channels;  ///< what stands there: as on the highest measured floor
-  double least_seen_loss;             ///< of LayoutOutlook, with it
+  std::vector<std::string> channels;  ///< its channels: as on the highest measured floor
+  double least_seen_loss;             ///< LayoutOutlook::least_seen_loss with this floor
 };
 
 /// Expected accuracy of a building with sensors on some floors, from its design.
 struct LayoutOutlook {
   std::vector<int> floors;  ///< measured
-  double shaking_mps2;      ///< rms of the base's motion that this is for
+  double shaking_mps2;      ///< rms of the assumed base motion
   bool noise_configured;
   std::vector<GroupOutlook> groups;
-  /// The loss of stiffness that is seen wherever it happens, relative, and the place that asks for
-  /// so much. Infinite: there are places where none is.
+  /// Smallest relative stiffness loss that is detected at every place, and the place that sets it.
+  /// Infinite if some place never shows a loss.
   double least_seen_loss = 0;
   int weakest_story = 0;
   std::vector<AdvisedFloor> advised;  ///< best first
 };
 
-/// config: of groups of stories. advise: floors to name at most.
+/// Predicts accuracy from the design. `config` must have groups of stories. `advise`: largest
+/// number of floors to name.
 LayoutOutlook layout_outlook(const Config& config, int advise);
 
-/// Lines for people, the first one with the heading's column.
+/// Returns lines for people; the first one has the heading's column.
 std::string layout_text(const LayoutOutlook& outlook, const estimator::Structure& structure);
 
 /// Returns warnings about a layout with sensors on some floors: what it cannot show or shows

@@ -46,7 +46,7 @@ struct BuildingDraft {
   std::string mass_unit;               ///< kg, t, kg/m2
   std::optional<double> area_m2;
   std::optional<TitleReading> reading;    ///< of the columns' titles
-  std::optional<StationReading> station;  ///< what headers of a network's files say
+  std::optional<StationReading> station;  ///< content of the headers of a network's files
   StationPlan station_plan;
 };
 
@@ -54,14 +54,14 @@ struct BuildingDraft {
 struct OpenQuestion {
   std::string option;  ///< "stories"; "channel": the place stands in `ask`
   std::string ask;
-  std::string initial;         ///< what an empty answer means; empty: it must be answered
+  std::string initial;         ///< meaning of an empty answer; empty if an answer is required
   std::string problem;         ///< why the answer is invalid; empty without an answer
-  std::optional<Place> place;  ///< of a channel: which column is there?
-  std::string answer = {};     ///< of a channel: the one that does not serve
-  std::string column = {};     ///< of a station: where is this one?
+  std::optional<Place> place;  ///< set if the question is about the column of this place
+  std::string answer = {};     ///< for a channel: its invalid answer
+  std::string column = {};     ///< for a station: the column whose place is asked
 };
 
-/// An answer as the summary shows it.
+/// An answer in the summary.
 struct UnderstoodAnswer {
   std::string option, title, text;
 };

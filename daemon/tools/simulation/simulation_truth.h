@@ -10,13 +10,14 @@
 
 namespace framewatch::daemon {
 
-/// {"kind": frame | panel | node | floor | base | channel | building, and "direction", "story",
-/// "frame", "panel", "node", "to_story", "channel", "with_channel" as they apply}.
+/// Returns {"kind": frame | panel | node | floor | base | channel | building} with those of
+/// "direction", "story", "frame", "panel", "node", "to_story", "channel" and "with_channel" that
+/// apply.
 nlohmann::ordered_json location_json(const estimator::EffectPlace& place,
                                      const estimator::Structure& structure,
                                      const std::vector<estimator::SensorAxis>& axes);
 
-/// {"k3_npm3": {"value": 1e7, "unit": "N/m^3"}, ...}.
+/// Returns {"k3_npm3": {"value": 1e7, "unit": "N/m^3"}, ...}.
 nlohmann::ordered_json parameters_json(const estimator::Effect& effect);
 
 /// Returns the truth of a scenario as JSON (docs/formats.md): the first effect under "hidden", all
