@@ -43,9 +43,9 @@ constexpr const char* kStyle =
 
 namespace {
 
-constexpr std::size_t kShortTable = 10;  // rows; it stays on one page of paper
+constexpr std::size_t kShortTable = 10;  // rows of a table that stays on one page of paper
 constexpr std::size_t kLongWords = 40;   // characters
-constexpr std::size_t kMaxColumns = 16;  // that words are looked for in
+constexpr std::size_t kMaxColumns = 16;  // columns that are searched for words
 
 bool is_number(const std::string& cell) {
   return !cell.empty() && std::string("0123456789+-.").find(cell[0]) != std::string::npos;

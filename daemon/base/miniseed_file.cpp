@@ -14,7 +14,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMaxCounts = 65536;  // that wait for a record
+constexpr std::size_t kMaxCounts = 65536;  // counts that wait for a record
 constexpr int kRecordBytes = 512;
 // Steim-2 holds differences of 30 bits.
 constexpr std::int32_t kMaxCount = (1 << 28) - 1;

@@ -33,7 +33,7 @@ bool open_parent(const std::string& folder, const std::vector<std::string>& name
   return parent.get() >= 0;
 }
 
-/// A device is not even opened: that alone may do something.
+/// Never opens a device, because opening alone can have an effect.
 bool is_servable_in(const drivers::Descriptor& parent, const std::string& name) {
   struct stat file {};
   return ::fstatat(parent.get(), name.c_str(), &file, AT_SYMLINK_NOFOLLOW) == 0 &&

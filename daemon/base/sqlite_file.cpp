@@ -126,7 +126,7 @@ bool SqliteStatement::row() {
 
 bool SqliteStatement::run() {
   const bool good = step() == SQLITE_DONE;
-  // A reset would forget why.
+  // A reset would discard the error.
   if (good) again();
   return good;
 }
@@ -173,7 +173,7 @@ bool SqliteFile::fail() {
   return false;
 }
 
-/// SQLite would wait for somebody to write into a FIFO.
+/// SQLite would block on a FIFO without a writer.
 bool SqliteFile::is_file(const std::string& path) {
   error_ = drivers::is_absent(path) ? "" : drivers::why_no_file(path);
   return error_.empty();

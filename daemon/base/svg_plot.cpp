@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kMargin = 0.04;  ///< beyond the data, share of their range
 
-/// The largest of 1, 2, 5 times a power of ten that makes at least `wanted` steps of a range.
+/// Returns the largest step of 1, 2 or 5 times a power of ten with at least `wanted` steps in a
+/// range.
 double round_step(double range, int wanted) {
   const double raw = range / wanted;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -42,7 +43,7 @@ std::vector<SvgTick> powers_of_ten(const SvgAxis& axis, int wanted) {
   return out;
 }
 
-/// Okabe and Ito's colours, which differ in lightness too; their brighter relatives on black.
+/// Colors of Okabe and Ito, which also differ in lightness; brighter variants on black.
 constexpr const char* kLight[] = {"#0072b2", "#d55e00", "#009e73", "#aa4499",
                                   "#b27d00", "#3d9ad1", "#7f7f7f"};
 constexpr const char* kDark[] = {"#4da6e8", "#ff8c42", "#2fce9f", "#e39bd0",
@@ -69,7 +70,7 @@ constexpr double kLeft = 72, kRight = 14, kBottom = 42, kTop = 10;  // px around
 constexpr double kFromEdge = 12;                                    // of the label beside it
 constexpr double kLine = 17;                                        // px, title and legend
 constexpr double kCharacter = 6.1;                                  // px, mean width in the legend
-constexpr double kFar = 1e4;  // px: what lies further outside is cut before it is written
+constexpr double kFar = 1e4;  // px; points farther outside are clipped
 
 /// The plotting area. A nested svg element with separate pixel coordinates clips it.
 struct Area {
@@ -96,7 +97,7 @@ struct Pixel {
   double x, y;
 };
 
-/// Points of one pixel column become their first, extremes and last, when there are too many.
+/// Reduces too many points of one pixel column to the first, the extremes and the last.
 std::vector<Pixel> thinned(const std::vector<Pixel>& all, double width) {
   if (static_cast<double>(all.size()) < 4 * width) return all;
   std::vector<Pixel> out;
@@ -216,7 +217,7 @@ std::string frame(const Area& a) {
   return out;
 }
 
-/// Sample of a series in the legend, 18 px wide, then its name.
+/// Draws a sample of a series in the legend, 18 px wide, then its name.
 std::string legend_entry(const SvgSeries& s, double x, double y) {
   if (is_line(s.mark))
     return fmt::format("<g class=\"s{}\">{}</g>", s.color,

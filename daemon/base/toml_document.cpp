@@ -12,7 +12,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Characters before the byte `at` of a text in UTF-8, plus one.
+/// Returns the column of byte `at` in a UTF-8 text: the characters before it plus one.
 int column_of(std::string_view line, std::size_t at) {
   return 1 + static_cast<int>(std::count_if(
                  line.begin(), line.begin() + static_cast<std::ptrdiff_t>(at),
@@ -69,7 +69,7 @@ bool is_boolean_otherwise(std::string_view value) {
          lower == "off";
 }
 
-/// "[channel]" of "cannot redefine existing table 'channel'".
+/// Returns "[channel]" for "cannot redefine existing table 'channel'".
 std::string repeated_table(const std::string& description) {
   constexpr std::string_view kWords = "cannot redefine existing table '";
   const std::size_t at = description.find(kWords);
@@ -113,7 +113,7 @@ TomlValue converted(const toml::node& node) {
   return out;
 }
 
-/// The line's begin and end in the text.
+/// Returns the begin and end of a line in the text.
 std::pair<std::size_t, std::size_t> line_bounds(const std::string& text, int line) {
   std::size_t begin = 0;
   for (int i = 1; i < line && begin != std::string::npos; ++i) {
@@ -124,8 +124,8 @@ std::pair<std::size_t, std::size_t> line_bounds(const std::string& text, int lin
   return {begin, std::min(text.find('\n', begin), text.size())};
 }
 
-/// Blanks the second of two equal keys, so that the rest of the text keeps its places. A table
-/// header cannot go: its keys would fall to the table above.
+/// Blanks the second of two equal keys, so that the rest keeps its places. A table header stays,
+/// because its keys would otherwise move to the table above.
 bool remove_duplicate(std::string& text, TextPlace& place) {
   const auto [begin, end] = line_bounds(text, place.line);
   const std::size_t first = text.find_first_not_of(" \t", begin);
@@ -139,7 +139,7 @@ bool remove_duplicate(std::string& text, TextPlace& place) {
 constexpr int kMaxDuplicates = 100;
 constexpr int kMaxKeyParts = 8;  // times the 256 inline tables that the parser takes
 
-/// Length of the string of TOML that begins at `at`, of its first line when it has several.
+/// Returns the length of the TOML string at `at`, or of its first line.
 std::size_t string_length(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const bool escapes = quote == '"';
@@ -256,9 +256,9 @@ std::optional<TomlValue> parse_toml(std::string text, std::vector<TextProblem>& 
       const auto [begin, end] = line_bounds(text, problem.place.line);
       problem.message = toml_advice(
           problem.message, std::string_view(text).substr(begin, end - begin), problem.place.column);
-      // The parser stops at its first error; a key given twice need not hide what follows it.
+      // The parser stops at its first error. Blanking a repeated key shows the errors after it.
       const bool go_on = duplicate && remove_duplicate(text, problem.place);
-      // A value over several lines loses its first only: what the parser says then is our doing.
+      // Blanking removes only the first line of a value, so later errors may be caused by it.
       if (duplicate || removed == 0) problems.push_back(problem);
       if (!go_on) break;
     }

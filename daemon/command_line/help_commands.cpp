@@ -14,7 +14,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Text as man(7) wants it: dashes that can be copied, no line that looks like a request.
+/// Escapes text for man(7): dashes that can be copied, and no line that looks like a request.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -100,16 +100,14 @@ constexpr const char* kRest =
     ".SH ENVIRONMENT\n"
     ".TP\n.B NO_COLOR\nAny value: no colors on a terminal.\n"
     ".TP\n.B TZ\nTime zone of the local times beside UTC.\n"
-    ".TP\n.B FRAMEWATCH_DATA\nFolder of the ground motions for\n.BR " framewatch reproduce
-    " .\n"
+    ".TP\n.B FRAMEWATCH_DATA\nFolder of the ground motions for\n.B framewatch reproduce\n"
     ".SH FILES\n"
     ".TP\n.I /etc/framewatch/building.toml\nThe building, for the services\n"
     ".I framewatch.service\nand\n.IR framewatch\\-serve.service ,\nwhich do not start without it.\n"
     ".TP\n.I /etc/framewatch/framewatch.env\nFurther options of the services.\n"
     ".TP\n.I /var/lib/framewatch/state\nThe learned state of the building, kept over a restart.\n"
     ".TP\n.I /run/framewatch\nSockets where the service accepts commands\n.RB ( \"framewatch "
-    "acknowledge\" "
-    ")\n"
+    "acknowledge\" )\n"
     "from root and from members of the group\n.IR framewatch\\-operators .\n"
     ".SH SEE ALSO\n.I /usr/share/doc/framewatch/operate.md.gz\n";
 

@@ -11,7 +11,7 @@ namespace framewatch::daemon {
 
 namespace {
 
-/// Files of one record, a line each.
+/// Adds the option of a record's files, joined by line breaks.
 void add_records(CLI::App* command, InitAnswers& answers) {
   command
       ->add_option_function<std::vector<std::string>>(

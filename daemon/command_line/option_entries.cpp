@@ -13,7 +13,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// "did you mean replay, repair or report?"; empty when nothing is near.
+/// Returns "did you mean replay, repair or report?". Empty if no name is close.
 std::string meant(const std::string& word, const std::vector<std::string>& known) {
   std::vector<std::string> near;
   for (const std::string& candidate : known)
@@ -52,7 +52,7 @@ std::string on_one_line(std::string text) {
   return text;
 }
 
-/// The words of "TEXT:{start,stop}", which is how CLI11 calls what must be one of them.
+/// Returns the words of "TEXT:{start,stop}", CLI11's type name of an option with fixed words.
 std::vector<std::string> choices_in(const std::string& type) {
   const std::size_t begin = type.find('{'), end = type.find('}');
   if (begin == std::string::npos || end == std::string::npos) return {};

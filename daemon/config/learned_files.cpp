@@ -28,7 +28,7 @@ std::string difference(const Config& config, const Config& model) {
   return {};
 }
 
-/// Why these are no points of a curve; empty: they are.
+/// Returns why these are not points of a curve, or an empty text.
 std::string problem_of(const std::vector<double>& amplitudes, const std::vector<double>& values,
                        const std::vector<double>& errors) {
   constexpr std::size_t kMax = estimator::AmplitudeBins::kBins;

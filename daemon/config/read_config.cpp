@@ -18,7 +18,7 @@ void check_sections(const TomlValue& document, std::vector<TextProblem>& problem
   std::vector<std::string> known;
   std::string headings;
   for (const SectionDescription& s : section_table()) {
-    if (!s.reload) continue;  // of another file
+    if (!s.reload) continue;  // a section of other files
     if (s.section.find('.') == std::string_view::npos) known.emplace_back(s.section);
     if (s.heading.starts_with('['))
       headings += (headings.empty() ? "" : ", ") + std::string(s.heading);

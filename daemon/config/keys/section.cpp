@@ -19,7 +19,7 @@ namespace {
 
 struct GridReading {
   std::vector<double> values;  ///< flattened, last index fastest
-  TextPlace place;             ///< of the problem
+  TextPlace place;             ///< place of the problem
   std::string problem;         ///< empty when the values are good
 };
 
@@ -30,8 +30,8 @@ int depth(const TomlValue& value) {
   return 1 + deepest;
 }
 
-/// The sizes the file's nesting has to have: those of size 1 go, last first, while there are more
-/// dimensions than nesting.
+/// Returns the sizes that the file's nesting must have: drops sizes of 1, last first, while there
+/// are more dimensions than nesting levels.
 std::vector<int> sizes_for_depth(std::vector<int> sizes, int nesting) {
   while (static_cast<int>(sizes.size()) > nesting) {
     const auto one = std::find(sizes.rbegin(), sizes.rend(), 1);
@@ -86,7 +86,7 @@ std::string size_text(const std::vector<int>& sizes) {
   return out;
 }
 
-/// "[1.0, 2.5]" as TOML writes it.
+/// Returns the numbers of a TOML list such as "[1.0, 2.5]".
 std::vector<double> numbers_in(const std::string& list) {
   std::vector<double> out;
   const char* at = list.c_str();

@@ -48,7 +48,7 @@ std::string type_of(const Option& o) {
   return "";
 }
 
-/// "0 to 3600", "above 0", "at least 1"; empty when anything goes.
+/// Returns "0 to 3600", "above 0" or "at least 1". Empty if all values are allowed.
 std::string range_of(const Option& o) {
   if (!std::isfinite(o.min)) return "";
   if (!std::isfinite(o.max))
@@ -56,8 +56,8 @@ std::string range_of(const Option& o) {
   return fmt::format("{}{:.10g} to {:.10g}", o.above_min ? "above " : "", o.min, o.max);
 }
 
-/// "above 0 to 3600 s, default `5.0`". A range replaces the word "number"; docs/effects.md has the
-/// units of effects.
+/// Returns "above 0 to 3600 s, default `5`". A range replaces the word "number". docs/effects.md
+/// has the units of effects.
 std::string value_of(const Option& o) {
   const std::string range = range_of(o);
   std::string out = range.empty() || o.type != OptionType::number ? type_of(o) : "";
@@ -74,7 +74,7 @@ bool share_a_line(const Option& a, const Option& b) {
   return a.meaning == b.meaning && value_of(a) == value_of(b);
 }
 
-/// One line per option; options alike in everything but the key share one.
+/// Returns one line per option. Options that differ only in their keys share a line.
 std::string lines_of(std::string_view section) {
   std::string out;
   std::string keys;

@@ -41,16 +41,16 @@ TextPlace place_in(const TomlValue& section, std::string_view key, std::size_t i
   return value->place;
 }
 
-/// The part of doubted_values() about [structure.design], whose table `section` is.
+/// Appends warnings about [structure.design], whose table is `section`.
 void doubt_design(const TomlValue& section, const estimator::Structure& structure,
                   const Eigen::VectorXd& design, std::vector<TextProblem>& doubts);
 
-/// Larger buildings would keep a person waiting for dense matrices.
+/// Dense matrices of larger buildings take too long.
 constexpr int kMaxDegreesOfFreedom = 200;
 /// Factor of a frequency for a thousandfold stiffness or mass.
 constexpr double kThousandfold = 31.6;
 
-/// The unit with which the frequency would be what it should be.
+/// Returns the probable unit error behind an implausible frequency.
 std::string slip_of_frequency(double first_hz, PlausibleRange allowed) {
   if (allowed.holds(first_hz * kThousandfold)) return "stiffness in kN/m where N/m is asked?";
   if (allowed.holds(first_hz * kThousandfold * kThousandfold))
@@ -110,7 +110,7 @@ void doubt_damping(const TomlValue& section, double ratio, std::vector<TextProbl
                    by_ratio ? "0.02 stands for 2 %" : "damping in another unit than N*s/m?")});
 }
 
-/// Frames of one direction, summed over each story.
+/// Returns the stiffness of each story, summed over the frames of one direction.
 void doubt_unequal_stories(const TomlValue& section, const char* key, const estimator::Structure& s,
                            int first_frame, int frames, const Eigen::VectorXd& design,
                            std::vector<TextProblem>& doubts) {
@@ -146,7 +146,7 @@ void doubt_design(const TomlValue& section, const estimator::Structure& s,
   doubt_unequal_stories(section, "ky_npm", s, s.n(), s.m(), design, doubts);
 }
 
-/// A length that may be in cm or mm where m is asked.
+/// Returns the probable unit error of a length in m.
 std::string slip_of_length(double value, PlausibleRange usual) {
   if (value > usual.most)
     for (const auto& [unit, per_m] : {std::pair("cm", 100.0), std::pair("mm", 1000.0)})

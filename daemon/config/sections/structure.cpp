@@ -105,7 +105,7 @@ DesignReading read_design(const TomlValue* design, const estimator::Structure& s
 
 constexpr std::size_t kMaxFrames = 100;
 
-/// Names become columns of CSV files and parts of parameter names.
+/// Checks names of frames, which become CSV columns and parts of parameter names.
 void check_names(ConfigSection& section, const char* key) {
   for (const std::string& name : section.texts(key))
     if (const std::string rule = problem_of_name(name); !rule.empty()) section.problem(key, rule);

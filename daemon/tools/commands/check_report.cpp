@@ -28,7 +28,7 @@ constexpr double kNoShear = 1e-9;
 constexpr double kWeakShear = 0.01;
 /// The derivative filters' error is small up to a fifth of the sampling rate.
 constexpr double kUsableShareOfRate = 0.2;
-/// Larger buildings would keep a person waiting for dense matrices.
+/// Dense matrices of larger buildings take too long.
 constexpr int kMaxDegreesOfFreedom = 400;
 
 /// Bytes allocated by this process and not freed.

@@ -21,7 +21,7 @@ double height_m(const BuildingDraft& d) {
   return std::accumulate(heights.begin(), heights.end(), 0.0);
 }
 
-/// Mass of each floor, kg.
+/// Returns the mass of each floor, kg.
 std::vector<double> masses_of_floors(const estimator::Structure& s) {
   const std::size_t nodes = s.node_mass.size() / static_cast<std::size_t>(s.stories);
   std::vector<double> out(static_cast<std::size_t>(s.stories), 0.0);
@@ -67,7 +67,7 @@ constexpr const char* kForms =
     "(25 MN/m, one or each), height, stories or none";
 
 constexpr int kMaxBays = 20;
-constexpr std::size_t kMaxDecimals = 3;  ///< that anybody types: 18000,20000 are two masses
+constexpr std::size_t kMaxDecimals = 3;  ///< decimals that people type: 18000,20000 are two masses
 
 bool may_be_decimal_comma(std::string_view text) {
   const std::size_t comma = text.find(',');
@@ -114,7 +114,8 @@ std::string take_start(const std::string& text, BuildingDraft& d, ColumnCache&) 
     d.plan.stiffness_from = "none: the filters find their frequencies from the data";
     return "";
   }
-  if (d.plan.structure.node_mass.empty() || height_m(d) <= 0) return "";  // asked for by others
+  if (d.plan.structure.node_mass.empty() || height_m(d) <= 0)
+    return "";  // other questions ask for these
   if (text == "height") {
     const double hz = kFrequencyTimesHeight_mps / height_m(d);
     start_from_frequencies(

@@ -20,7 +20,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Rates are round numbers; times in a file are rounded.
+/// Largest relative rounding of a rate: rates are round numbers, but times in a file are rounded.
 constexpr double kRounding = 1e-3;
 
 double round_rate_hz(double rate_hz) {

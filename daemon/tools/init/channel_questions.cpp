@@ -109,8 +109,8 @@ std::string usual_name(const Structure& s, const Place& place) {
   return fmt::format("F{}-{}", place.story, frame);
 }
 
-/// One node for each channel; where a floor has one accelerometer for each direction, one node for
-/// each floor.
+/// Returns the LCM source: one node per floor if it has one accelerometer per direction, else one
+/// node per channel.
 std::string lcm_source(const Structure& s, const Place& place, std::size_t index) {
   const bool one_a_floor = s.n() == 1 && s.m() == 1;
   return fmt::format("{{ lcm = \"ACCEL\", node = {}, axis = \"{}\" }}",

@@ -33,8 +33,8 @@ bool is_number_word(std::string_view word) {
   return !word.empty() && std::isdigit(static_cast<unsigned char>(word.front()));
 }
 
-/// Runs of letters and of digits, lower case; a capital behind a small letter begins a new run, and
-/// "basex" is "base" and "x". A run that follows the one before without anything between begins
+/// Splits a title into lower-case runs of letters and of digits. A capital after a small letter
+/// begins a new run, and "basex" becomes "base" and "x". A run directly after another one begins
 /// with '+'.
 std::vector<std::string> runs_of(const std::string& title) {
   std::vector<std::string> out;
@@ -68,7 +68,7 @@ std::vector<std::string> split_joined(const std::vector<std::string>& runs) {
   return out;
 }
 
-/// Walks over the words of one title.
+/// Parses the words of one title.
 class TitleWalk {
  public:
   explicit TitleWalk(const std::vector<std::string>& runs) {
@@ -81,8 +81,7 @@ class TitleWalk {
   std::optional<TitleWords> walk() {
     while (at_ < words_.size())
       if (!step()) return std::nullopt;
-    if (bare_a_ && out_.letter == 0)
-      return std::nullopt;  // the number of a sensor, for all we know
+    if (bare_a_ && out_.letter == 0) return std::nullopt;  // probably the number of a sensor
     return out_;
   }
 
@@ -171,7 +170,7 @@ std::optional<Place> on_floor(const estimator::Structure& s, int story, Directio
   return frame ? std::optional(Place{story, *frame, direction}) : std::nullopt;
 }
 
-/// "y1" is the frame of that name.
+/// Reads "y1" as the frame of that name.
 std::optional<Place> as_frame(const estimator::Structure& s, const TitleWords& words, int story) {
   const std::string name = words.letter + std::to_string(words.number);
   for (int f = 0; f < s.frames(); ++f) {
@@ -182,7 +181,7 @@ std::optional<Place> as_frame(const estimator::Structure& s, const TitleWords& w
   return std::nullopt;
 }
 
-/// "y1" is the first accelerometer along y.
+/// Reads "y1" as the first accelerometer along y.
 std::optional<Place> as_direction(const estimator::Structure& s, const TitleWords& words,
                                   int story) {
   if (words.says_frame || (words.along != 0 && words.along != words.letter)) return std::nullopt;
@@ -241,7 +240,7 @@ Assignment assign(const estimator::Structure& s, const std::vector<std::string>&
   return out;
 }
 
-/// The first column that the readings put into different places.
+/// Returns the first column that the readings put into different places.
 void find_ambiguous(const estimator::Structure& s, const std::vector<std::string>& titles,
                     ColumnPlaces& out) {
   for (std::size_t c = 0; c < titles.size(); ++c) {

@@ -15,7 +15,7 @@ namespace {
 
 using Draft = BuildingDraft;
 
-constexpr int kMaxStories = 200;  ///< no building has so many
+constexpr int kMaxStories = 200;  ///< no building has more
 
 bool always(const Draft&) {
   return true;
@@ -147,7 +147,7 @@ std::string understood_bays(const Draft& d) {
   return out;
 }
 
-/// Positive numbers in m, one or `count`.
+/// Parses positive numbers in m: one or `count`.
 std::string take_lengths(const std::string& text, int count, bool count_known,
                          std::vector<double>& out) {
   const auto quantity = parse_quantity(text);
@@ -186,7 +186,7 @@ std::string take_floors(const std::string& text, Draft& d, ColumnCache&) {
   return "";
 }
 
-/// kg; the floors' when the area is known.
+/// Returns masses in kg: of the floors if they are given in kg/m2 and the area is known.
 std::vector<double> floor_masses(const Draft& d) {
   double factor = 1;
   if (d.mass_unit == "t") factor = 1000;
@@ -251,7 +251,7 @@ std::string fixed(const Draft&) {
   return Text;
 }
 
-// Questions and defaults that do not depend on what was answered before.
+// Questions and defaults that do not depend on earlier answers.
 constexpr char kAskRecord[] =
     "A record of its accelerometers (CSV and the like), from whose header the channels come? A "
     "file's\nname, behind it what the file does not say (my.csv --unit g), or none";

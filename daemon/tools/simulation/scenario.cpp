@@ -28,10 +28,10 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;
-/// A delay is made by a filter that is longer by it at both ends.
+/// A delay needs a filter that is longer by the delay at both ends.
 constexpr double kLongestDelay_s = 1;
 
-/// Keys that are given replace what `model` holds.
+/// Replaces values of `model` by the given keys.
 void read_sensor(ConfigSection& s, estimator::SensorModel& model, double& noise_ratio) {
   const auto take = [&](const char* key, double& value, double factor = 1) {
     if (s.given(key)) value = factor * s.number(key);
@@ -63,8 +63,8 @@ void refuse_acceleration(ConfigSection& s) {
                 "dead_from_s and dead_to_s");
 }
 
-/// [sensors] (null when absent), which holds for every axis of scenario.config, and the [[sensor]]
-/// tables, each for the channel it names, into scenario.sensors and scenario.noise_ratio.
+/// Reads [sensors] (null if absent) for every axis of scenario.config and the [[sensor]] tables for
+/// the channels they name. Sets scenario.sensors and scenario.noise_ratio.
 void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& single,
                   Scenario& scenario, std::vector<TextProblem>& problems) {
   estimator::SensorModel common;
@@ -169,17 +169,17 @@ class TruthReader {
   Eigen::VectorXd theta_;
 };
 
-/// True parameters of the virtual building, in table order, SI: [truth], else the design (which may
-/// be empty). Damping is proportional to the stiffness where it is not given.
+/// Returns the true parameters of the virtual building in table order, SI, from [truth] or else the
+/// design (which may be empty). Missing damping is proportional to the stiffness.
 Eigen::VectorXd read_truth(ConfigSection& section, const estimator::Structure& structure,
                            const Eigen::VectorXd& design) {
   return TruthReader(structure, design, section).read();
 }
 
-constexpr double kMaxChanged = 1e7;  // every change has a value of every parameter
+constexpr double kMaxChanged = 1e7;  // values; every change stores all parameters
 constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change", "effect"};
 
-/// The file in three parts: top keys, sections of the scenario, the rest (the building).
+/// The three parts of the file: top keys, sections of the scenario, the building.
 struct Parts {
   TomlValue top;
   TomlValue sections;
@@ -330,7 +330,7 @@ class ScenarioReader {
   Parts parts_;
   std::string path_;
   std::string sha256_;
-  const Config* building_;  ///< null: the file's own
+  const Config* building_;  ///< null for the building in the file
   std::vector<ConfigProblem>& out_;
   std::vector<TextProblem> problems_;
 };

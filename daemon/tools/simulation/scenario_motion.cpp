@@ -16,7 +16,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Times may be rounded in the file by this share of a step.
+/// Largest rounding of times in the file, as a share of a step.
 constexpr double kUneven = 0.1;
 
 std::optional<std::size_t> chosen_channel(const drivers::Record& record, const std::string& column,
@@ -42,7 +42,7 @@ std::string problem_of(const drivers::Record& record, const std::vector<double>&
   return "";
 }
 
-constexpr double kMaxSamples = 2e7;  // 160 MB, and there are several copies
+constexpr double kMaxSamples = 2e7;  // 160 MB per copy, of which there are several
 constexpr std::initializer_list<const char*> kSeededKeys = {"ground_frequency_hz",
                                                             "ground_damping_ratio",
                                                             "high_pass_hz",

@@ -25,7 +25,7 @@ estimator::ResponseStream response_of(const Scenario& s) {
           channels,  s.effects};
 }
 
-/// The sensors with their noise ratios turned into densities, which takes a run ahead.
+/// Converts the sensors' noise ratios to densities, by a run in advance.
 std::vector<estimator::SensorModel> sensors_of(const Scenario& s) {
   std::vector<estimator::SensorModel> models = s.sensors;
   estimator::ChannelEffects(s.effects).limit(models);
