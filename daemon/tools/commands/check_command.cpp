@@ -84,7 +84,7 @@ const char* place_name(estimator::PlaceKind kind) {
   return "";
 }
 
-/// " (N/m, default `0`)"; empty without a unit and a default.
+/// Returns " (N/m, default `0`)". Empty without unit and default.
 std::string value_of(const estimator::EffectParameter& p) {
   std::string out(p.unit);
   if (p.default_value)
@@ -92,7 +92,7 @@ std::string value_of(const estimator::EffectParameter& p) {
   return out.empty() ? "" : fmt::format(" ({})", out);
 }
 
-/// docs/effects.md, made from the catalogue of effects.
+/// Returns docs/effects.md, made from the catalog of effects.
 std::string effects_markdown() {
   std::string out = kIntroduction;
   for (const estimator::EffectDescription& d : estimator::effect_catalogue()) {
@@ -120,7 +120,7 @@ bool names_scenario(const std::string& path) {
   return document && is_scenario(*document);
 }
 
-/// The building of a scenario in which nothing is wrong.
+/// Returns the building of a valid scenario.
 std::optional<Config> config_of_scenario(const std::string& path,
                                          std::vector<ConfigProblem>& problems) {
   std::optional<Scenario> scenario = load_scenario(path, problems);

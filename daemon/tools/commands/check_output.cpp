@@ -40,7 +40,7 @@ Json channels(const Config& config) {
   return out;
 }
 
-/// The drifts at which damage begins, of the stories that differ from the one below.
+/// Returns the drifts at which damage begins, for each story that differs from the one below.
 std::string fragility_text(const Config& config) {
   if (!config.fragility)
     return "fragility   not configured: reports give drifts without damage (see [fragility] "

@@ -105,7 +105,7 @@ drivers::PlausibleRange range_of(const std::optional<Config>& config, const Reco
   return range;
 }
 
-/// Says what is implausible, and what the configuration contradicts.
+/// Logs implausible values and contradictions to the configuration.
 void look_at(const Record& record, const std::string& path, const std::optional<Config>& config,
              Problems& problems) {
   for (const std::string& doubt : drivers::implausible(
@@ -130,7 +130,7 @@ std::vector<Record> read_records(const ConvertArguments& a, const std::optional<
   return records;
 }
 
-/// Devices have a clock whose zero means nothing: a record of theirs begins at 0.
+/// Lets records of devices begin at 0, because the zero of their clock has no meaning.
 bool is_device(const Record& record) {
   return record.names == std::vector<std::string>{"x", "y", "z"};
 }
@@ -161,7 +161,7 @@ std::vector<AxisAddress> numbered(const Record& record, bool devices, const std:
   return result;
 }
 
-/// Keeps the columns the configuration knows, and says where they travel.
+/// Keeps the columns that the configuration knows and sets their LCM channel and node.
 std::vector<AxisAddress> configured(const Config& config, Record& record, Problems& problems) {
   const std::string& path = config.path;
   const std::vector<AxisAddress> known = addresses(config.sources);
@@ -186,7 +186,7 @@ std::vector<AxisAddress> configured(const Config& config, Record& record, Proble
   return result;
 }
 
-/// The one channel of `found` to convert, or the one that was asked for.
+/// Returns the channel that was asked for, or else the only one of `found`.
 std::string chosen(const std::vector<std::string>& found, const std::string& asked) {
   if (!asked.empty())
     return std::find(found.begin(), found.end(), asked) != found.end() ? asked : "";
@@ -220,7 +220,7 @@ std::string main_window(const std::vector<std::string>& estimates, const std::st
   return *main;
 }
 
-/// Why there is not exactly one channel to convert.
+/// Returns why there is not exactly one channel to convert.
 std::string no_choice(const drivers::LogContents& contents, const std::string& asked) {
   const std::string channels =
       fmt::format("accelerations: {}; estimates: {}; other: {}", list(contents.accel),
@@ -251,7 +251,7 @@ void report(const Record& record) {
   for (const std::string& note : record.notes) log(LogLevel::notice, note);
 }
 
-/// The paper's removal of noise, P1 (22)-(27), on every channel.
+/// Applies the paper's noise removal, P1 (22)-(27), to every channel.
 void denoise(Record& record, Problems& problems) {
   const estimator::SvdDenoising denoising;
   if (record.time_s.size() < static_cast<std::size_t>(denoising.segment_rows())) {
@@ -302,7 +302,7 @@ void convert_log(const ConvertArguments& a, ProgressLine& progress, Problems& pr
   if (a.boxplot) problems.push_back({"--boxplot", "needs estimates; this log has no estimates"});
   progress.follow_reading("reading " + in, a.inputs, 1);
   auto record = drivers::read_accel_log(in, accel, problems);
-  Problems impossible;  // a log cannot be mended by hand: it is converted, and told
+  Problems impossible;  // a log cannot be corrected by hand: convert it and warn
   if (record) look_at(*record, in, {}, impossible);
   for (const Problem& p : impossible)
     log(LogLevel::warning, fmt::format("{}: {}", p.where, p.message));

@@ -13,7 +13,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kNeverSeen = 1;  // all of the stiffness
+constexpr double kNeverSeen = 1;  // loss of the whole stiffness
 
 struct Weakest {
   double loss = 0;
@@ -30,7 +30,7 @@ Weakest weakest(const estimator::LayoutPrediction& p, const estimator::PipelineC
   return out;
 }
 
-/// The channels of the highest measured floor, on another one.
+/// Returns the channels of the highest measured floor, placed on another floor.
 std::vector<estimator::SensorAxis> copied_to(const estimator::PipelineConfig& c, int from,
                                              int floor) {
   std::vector<estimator::SensorAxis> out;
@@ -47,10 +47,10 @@ std::string percent(double ratio) {
   return std::isfinite(ratio) ? fmt::format("{:.2g} %", 100 * ratio) : "-";
 }
 
-/// Off the frames' directions by more: an axis measures both.
+/// An axis that is farther off the frames' directions measures both.
 constexpr double kOblique_deg = 15;
-/// Stories in this upper part of a building drift little, and their drift is a difference of two
-/// floors that move alike.
+/// Stories in this upper part of a building drift little: their drift is a small difference of two
+/// floors.
 constexpr double kNearRoof = 0.8;
 constexpr double kSameSpot_m = 0.01, kParallel_rad = 0.02;
 
@@ -118,7 +118,8 @@ double angle_of(const estimator::Structure& s, const estimator::SensorAxis& axis
   return along == estimator::Direction::x ? 0 : M_PI / 2;
 }
 
-/// Its place across the way it points, m: what distinguishes parallel axes of a rigid floor.
+/// Returns the position of an axis across its direction, m. It distinguishes parallel axes of a
+/// rigid floor.
 double across_m(const estimator::Structure& s, const estimator::SensorAxis& axis) {
   if (!axis.plan) return axis.frame >= 0 ? line_position(s, axis.frame) : 0;
   return std::abs(std::sin(axis.plan->angle_rad)) > std::abs(std::cos(axis.plan->angle_rad))

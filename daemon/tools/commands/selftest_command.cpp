@@ -31,7 +31,7 @@ namespace {
 
 constexpr int kDelivery_ms = 1000;
 constexpr double kShaken_s = 15;
-constexpr double kMinSpeed = 3;  // times real time: room for bursts and for other programs
+constexpr double kMinSpeed = 3;  // multiple of real time; leaves room for bursts and other programs
 constexpr std::size_t kDisk_bytes = 1 << 20;
 constexpr double kSlowDisk_s = 1;
 constexpr std::int64_t kLittleDisk_bytes = 1'000'000'000;
@@ -42,7 +42,7 @@ const char* instruction_set() {
   return "no vector instructions beyond the machine's least";
 }
 
-/// Empty, or why not.
+/// Returns an empty text, or the reason of the failure.
 std::string write_and_sync(const std::string& path) {
   drivers::PartialFile file;
   if (!file.open(path)) return file.error();
@@ -102,7 +102,7 @@ MachineCheck check_buffer(const LcmSettings& settings) {
   ::setsockopt(probe, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
   ::getsockopt(probe, SOL_SOCKET, SO_RCVBUF, &got, &size);
   ::close(probe);
-  got /= 2;  // the kernel doubles it for its own books
+  got /= 2;  // the kernel returns twice the requested value
   MachineCheck check{got >= wanted, "buffers", fmt::format("{} of {} bytes", got, wanted)};
   if (!check.good)
     check.remedy = fmt::format(

@@ -39,7 +39,7 @@ namespace {
 /// Logs of a demo with a report, in a temporary folder. Without a report nothing is stored.
 class DemoLogs {
  public:
-  /// report: the page to write; empty: none.
+  /// `report`: page to write; empty for none.
   explicit DemoLogs(const std::string& report);
   ~DemoLogs();
   DemoLogs(const DemoLogs&) = delete;
@@ -48,7 +48,7 @@ class DemoLogs {
   void raw(std::int64_t time_us, const std::string& channel, const void* data, std::size_t size);
   void estimate(std::int64_t time_us, const std::string& channel,
                 const std::vector<std::uint8_t>& bytes);
-  /// Closes the logs and writes the report about them. building: that was shaken.
+  /// Closes the logs and writes the report. `building`: the shaken building.
   void write_report(const DemoBuilding& building);
 
  private:
@@ -103,7 +103,7 @@ int demo_port() {
 constexpr double kDropAt_s = 20;
 constexpr double kFlush_s = 0.05;
 
-/// The four parties of the demo, each with its own LCM where the provider allows it.
+/// The four parties of the demo, each with a separate LCM instance if the provider allows it.
 class DemoBus {
  public:
   bool open(const DemoNetwork& network, const drivers::LcmReception& reception,
@@ -144,7 +144,7 @@ void introduce(const DemoBuilding& building, const DemoNetwork& network, double 
 /// The parties of the demo, each served in turn by one thread.
 struct DemoLoop {
   const Scenario& scenario;
-  double forgotten_s;  ///< after the loss
+  double forgotten_s;  ///< time after the loss
   double seconds;
   SimulationOutput& sensors;
   drivers::LcmSource& source;
@@ -155,9 +155,9 @@ struct DemoLoop {
   WebServer& server;
   DemoView& view;
 
-  /// Shakes the building in real time. False when a party failed, which was printed.
+  /// Shakes the building in real time. Prints the error and returns false if a party failed.
   bool shake();
-  /// Waits for the last messages, which may still be on their way on a busy machine.
+  /// Waits for the last messages, which can be late on a busy machine.
   void receive_rest(const Estimation& estimation);
 };
 
@@ -171,7 +171,7 @@ bool DemoLoop::shake() {
       fmt::print(stderr, "framewatch demo: {}\n", sensors.error());
       return false;
     }
-    // All messages of this instant are on their way; the next one is put when it is due.
+    // All messages of this instant are sent; the next instant follows when it is due.
     if (!source.handle(1)) {
       fmt::print(stderr, "framewatch demo: LCM failed\n");
       return false;
@@ -210,7 +210,7 @@ int demo(const DemoArguments& a) {
   if (!a.can.empty()) put_on_can(scenario.config, a.can);
   scenario.duration_s = a.seconds;
   scenario.changes.push_back({kDropAt_s, after_loss(building)});
-  // Before the network: the page is for a browser outside of it.
+  // Start the page before the private network, so that browsers outside reach it.
   std::string no_page;
   int socket = listen_on("127.0.0.1", a.port, no_page);
   if (socket < 0) socket = listen_on("127.0.0.1", 0, no_page);
@@ -234,7 +234,7 @@ int demo(const DemoArguments& a) {
         return {true, "the demo has no daemon to tell", {}};
       });
   WebServer server(web, live);
-  // The page draws samples of LCM messages.
+  // Without LCM samples there is no page to draw.
   const bool served = a.can.empty() && socket >= 0 && server.start(socket, no_page);
   if (!served && a.can.empty()) fmt::print(stderr, "framewatch demo: no page: {}\n", no_page);
   if (!a.quiet)

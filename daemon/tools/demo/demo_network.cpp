@@ -51,7 +51,7 @@ bool add_multicast_route(int fd) {
   return ::ioctl(fd, SIOCADDRT, &route) == 0;
 }
 
-/// Our own user stays who it was, so files keep their owner.
+/// Maps the user to itself, so that files keep their owner.
 void keep_user(uid_t user, gid_t group) {
   std::ofstream("/proc/self/setgroups") << "deny";
   std::ofstream("/proc/self/uid_map") << fmt::format("{} {} 1", user, user);

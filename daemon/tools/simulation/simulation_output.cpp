@@ -24,8 +24,8 @@ namespace {
 
 constexpr int kSmallBuffer_bytes = 4096;
 constexpr auto kWorthSleeping = std::chrono::milliseconds(1);
-/// Making and closing a CAN socket takes the kernel milliseconds, and the nodes must not fall
-/// behind.
+/// Opening and closing a CAN socket takes milliseconds. A separate thread does it, so that the
+/// nodes are not delayed.
 constexpr auto kLookAgain = std::chrono::milliseconds(50);
 /// Matches an unused id: the sender reads nothing.
 const std::vector<drivers::CanFilter> kNothing{{0x1FFFFFFF, 0x1FFFFFFF, true}};
@@ -106,7 +106,7 @@ class CanOutput : public SimulationOutput {
   double speed_;
   std::vector<std::string> interfaces_;
   std::vector<drivers::CanSocket> sockets_;
-  std::vector<Clock::time_point> look_again_;  ///< for an interface that is not there
+  std::vector<Clock::time_point> look_again_;  ///< when to retry a missing interface
   bool started_ = false;
   Clock::time_point start_;
   std::int64_t unsent_ = 0;
@@ -190,8 +190,8 @@ class LiveOutput : public SimulationOutput {
   lcm::LCM& lcm_;
   drivers::AccelMessages messages_;
   double speed_;
-  std::int64_t table_every_;  ///< instants; so that a late listener learns the names, too
-  Clock::time_point start_;   ///< of the first instant
+  std::int64_t table_every_;  ///< instants between channel tables; late listeners need the names
+  Clock::time_point start_;   ///< time of the first instant
   std::int64_t start_us_ = 0;
   std::int64_t instant_ = 0;
 };

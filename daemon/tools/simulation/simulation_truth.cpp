@@ -53,7 +53,7 @@ Json frames(const estimator::Structure& s, const Eigen::VectorXd& theta, int fir
   return out;
 }
 
-/// [story][x span][y span].
+/// Returns a grid [story][x span][y span].
 Json panels(const estimator::Structure& s, const Eigen::VectorXd& theta, int offset) {
   const estimator::ParameterTable table(s);
   Json out = Json::array();
@@ -70,7 +70,7 @@ Json panels(const estimator::Structure& s, const Eigen::VectorXd& theta, int off
   return out;
 }
 
-/// [story][x line][y line].
+/// Returns a grid [story][x line][y line].
 Json masses(const estimator::Structure& s) {
   const int rows = std::max(s.n(), 1);
   const int columns = std::max(s.m(), 1);
@@ -109,7 +109,7 @@ Json true_parameters(const Scenario& scenario) {
            "node_mass[story][x line][y line]"}};
 }
 
-/// The sensor that rides where the effect is, if it is at one.
+/// Returns the sensor at the place of the effect, if any.
 std::string nearest_channel(const estimator::EffectPlace& p,
                             const std::vector<estimator::SensorAxis>& axes) {
   for (const estimator::SensorAxis& axis : axes)
