@@ -1,3 +1,6 @@
+#include <iterator>
+#include <vector>
+
 #include "daemon/config/keys/option_table.h"
 
 namespace framewatch::daemon {
@@ -280,73 +283,6 @@ const Option kScenarioOptions[] = {
      .type = text,
      .required = true,
      .meaning = "Name of the channel."},
-    {.section = "sensor",
-     .key = "noise_mps2_per_rthz",
-     .type = number,
-     .unit = "m/s^2/sqrt(Hz)",
-     .default_value = "0",
-     .min = 0,
-     .max = 1e3,
-     .meaning = "White noise, one-sided density."},
-    {.section = "sensor",
-     .key = "noise_ratio",
-     .type = number,
-     .default_value = "0",
-     .min = 0,
-     .max = 1e3,
-     .meaning = "Additional white noise relative to the channel's rms."},
-    {.section = "sensor",
-     .key = "bias_mps2",
-     .type = number,
-     .unit = "m/s^2",
-     .default_value = "0",
-     .min = -1e3,
-     .max = 1e3,
-     .meaning = "Constant error."},
-    {.section = "sensor",
-     .key = "ramp_mps3",
-     .type = number,
-     .unit = "m/s^2 per s",
-     .default_value = "0",
-     .min = -1e3,
-     .max = 1e3,
-     .meaning = "Drift of the bias."},
-    {.section = "sensor",
-     .key = "full_scale_g",
-     .type = number,
-     .unit = "g",
-     .default_value = "0",
-     .min = 0,
-     .max = 1e4,
-     .meaning = "Values are clipped at plus and minus this; 0: no limit."},
-    {.section = "sensor",
-     .key = "bits",
-     .type = integer,
-     .default_value = "0",
-     .min = 0,
-     .max = 32,
-     .meaning = "Bits of the converter over the full scale; 0: no quantization."},
-    {.section = "sensor",
-     .key = "loss_ratio",
-     .type = number,
-     .default_value = "0",
-     .min = 0,
-     .max = 0.999,
-     .meaning = "Probability that a sample is lost."},
-    {.section = "sensor",
-     .key = "dead_from_s",
-     .type = number,
-     .unit = "s",
-     .min = 0,
-     .max = 1e6,
-     .meaning = "Start of a period without samples."},
-    {.section = "sensor",
-     .key = "dead_to_s",
-     .type = number,
-     .unit = "s",
-     .min = 0,
-     .max = 1e6,
-     .meaning = "End of that period. Default: the end of the test."},
 
     {.section = "change",
      .key = "at_s",
@@ -373,7 +309,16 @@ const Option kScenarioOptions[] = {
 }  // namespace
 
 std::span<const Option> scenario_options() {
-  return kScenarioOptions;
+  static const std::vector<Option> kAll = [] {
+    std::vector<Option> all(std::begin(kScenarioOptions), std::end(kScenarioOptions));
+    for (const Option& o : kScenarioOptions) {
+      if (o.section != "sensors") continue;
+      all.push_back(o);
+      all.back().section = "sensor";  // a [[sensor]] has the keys of all sensors
+    }
+    return all;
+  }();
+  return kAll;
 }
 
 }  // namespace framewatch::daemon

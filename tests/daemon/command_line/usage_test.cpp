@@ -51,7 +51,7 @@ TEST_F(Usage, AMisspeltCommandIsToldWithWhatWasMeant) {
             "report or record?\n");
   EXPECT_EQ(shell("$F xyzzy").err,
             "framewatch: there is no command xyzzy: framewatch help lists them\n");
-  EXPECT_EQ(shell("$F").err, "framewatch: which command? `framewatch help` lists them\n");
+  EXPECT_EQ(shell("$F").err, "framewatch: no command given; run `framewatch help` for a list\n");
   EXPECT_EQ(shell("$F").status, kBadInput);
 }
 
@@ -73,7 +73,7 @@ TEST_F(Usage, EveryMisspeltOptionIsToldBeforeAnythingElse) {
 
 TEST_F(Usage, OtherBadUsageNamesTheCommandAndItsHelp) {
   EXPECT_EQ(shell("$F check").err,
-            "framewatch check: CONFIG is required\n`framewatch help check` says how it is used\n");
+            "framewatch check: CONFIG is required\nrun `framewatch help check` for its usage\n");
   EXPECT_EQ(shell("$F demo --seconds no").status, kBadInput);
 }
 
