@@ -14,10 +14,6 @@
 
 namespace framewatch::daemon {
 
-/// Returns why a scenario is too long or its building too large to simulate, or an empty text.
-/// Checks before allocating anything that large.
-std::string size_problem(const Scenario& scenario);
-
 /// A virtual test: configured building and sensors, true parameters, ground motion and changes.
 struct Scenario {
   Config config;
@@ -53,5 +49,9 @@ class Simulation {
 
 /// Returns the number of instants in the scenario's duration, both ends included.
 std::int64_t instants(const Scenario& scenario);
+
+/// Returns why a scenario is too long or its building too large to simulate, or an empty text.
+/// Checks before allocating anything that large.
+std::string size_problem(const Scenario& scenario);
 
 }  // namespace framewatch::daemon

@@ -10,13 +10,6 @@
 
 namespace framewatch::daemon {
 
-/// Returns an output that sends the frames of the configured CAN nodes at `speed` times real time,
-/// with SYNC for nodes that need it. The bus's bit rate spaces its frames. `interface` replaces the
-/// configured one if there is one bus. Frames are lost while an interface is down. Returns null and
-/// sets the error if one cannot be opened. `scenario` must outlive the output.
-std::unique_ptr<SimulationOutput> can_output(const Scenario& scenario, const std::string& interface,
-                                             double speed, std::string& error);
-
 /// Stores or sends the instants of a virtual test.
 class SimulationOutput {
  public:
@@ -38,5 +31,12 @@ std::unique_ptr<SimulationOutput> file_output(const Scenario& scenario, const st
 /// first instant plus the test's time. `lcm` must outlive the output.
 std::unique_ptr<SimulationOutput> live_output(const Scenario& scenario, lcm::LCM& lcm,
                                               double speed);
+
+/// Returns an output that sends the frames of the configured CAN nodes at `speed` times real time,
+/// with SYNC for nodes that need it. The bus's bit rate spaces its frames. `interface` replaces the
+/// configured one if there is one bus. Frames are lost while an interface is down. Returns null and
+/// sets the error if one cannot be opened. `scenario` must outlive the output.
+std::unique_ptr<SimulationOutput> can_output(const Scenario& scenario, const std::string& interface,
+                                             double speed, std::string& error);
 
 }  // namespace framewatch::daemon
