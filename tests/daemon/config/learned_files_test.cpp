@@ -6,7 +6,7 @@
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {
-namespace baseline_file_test {
+namespace learned_files_test {
 
 const estimator::ParameterTable& table() {
   static const estimator::ParameterTable of(table1());
@@ -69,5 +69,5 @@ TEST(BaselineFile, MalformedAmplitudesAreNamed) {
   }
 }
 
-}  // namespace baseline_file_test
+}  // namespace learned_files_test
 }  // namespace framewatch::daemon
