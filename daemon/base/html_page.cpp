@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/svg_style.h"
+#include "daemon/base/svg_plot.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -43,15 +43,15 @@ constexpr const char* kStyle =
 
 namespace {
 
-constexpr std::size_t kShortTable = 10;  // rows; it stays on one page of paper
+constexpr std::size_t kShortTable = 10;  // rows of a table that stays on one page of paper
 constexpr std::size_t kLongWords = 40;   // characters
-constexpr std::size_t kMaxColumns = 16;  // that words are looked for in
+constexpr std::size_t kMaxColumns = 16;  // columns that are searched for words
 
 bool is_number(const std::string& cell) {
   return !cell.empty() && std::string("0123456789+-.").find(cell[0]) != std::string::npos;
 }
 
-/// "w2 w5 l5": the columns after the first that hold words alone, and which of them long ones.
+/// Returns "w2 w5 l5": the columns after the first that hold only words (w) and long words (l).
 std::string columns_of_words(std::size_t columns,
                              const std::vector<std::vector<std::string>>& rows) {
   std::string out;
@@ -69,7 +69,7 @@ std::string columns_of_words(std::size_t columns,
   return out;
 }
 
-/// Left-aligned, long ones broken into lines: what columns_of_words() names.
+/// Returns CSS for columns_of_words(): left-aligned, with line breaks in long words.
 std::string style_of_words() {
   std::string left, broken;
   for (std::size_t c = 2; c <= kMaxColumns; ++c) {

@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
-#include "daemon/base/terminal_colour.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -24,7 +23,7 @@ void log(LogLevel level, const std::string& message) {
   const std::string text = printable(message);
   const std::string line = journal ? fmt::format("<{}>framewatch: {}\n", int(level), text)
                                    : fmt::format("{} {}\n", name_of_program(level), text);
-  // Not by fmt::print, which throws when stderr takes nothing: a daemon goes on.
+  // fmt::print throws when stderr cannot be written; a daemon must continue.
   (void)std::fputs(line.c_str(), stderr);
 }
 

@@ -7,11 +7,11 @@ namespace framewatch::daemon {
 
 enum class LogLevel { error = 3, warning = 4, notice = 5, info = 6, debug = 7 };
 
-/// One line on stderr, whatever is in the message (printable()); under systemd prefixed with <N>,
-/// from which journald knows its priority.
+/// Writes one printable() line on stderr. Under systemd the prefix <N> gives journald its priority.
 void log(LogLevel level, const std::string& message);
 
-/// Lets one line per second through and says how many it held back. The caller passes the time.
+/// Logs at most one line per second and adds the number of suppressed lines. The caller passes the
+/// time.
 class RateLimitedLog {
  public:
   explicit RateLimitedLog(LogLevel level) : level_(level) {}

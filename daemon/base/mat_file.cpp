@@ -17,7 +17,7 @@ using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
 }  // namespace
 
 bool MatFile::matrix(const char* name, const std::vector<double>& values, std::size_t columns) {
-  // MATLAB's order is the other one.
+  // MATLAB uses column-major order.
   const std::size_t rows = values.size() / columns;
   std::vector<double> turned(values.size());
   for (std::size_t r = 0; r < rows; ++r)
@@ -46,7 +46,8 @@ bool MatFile::texts(const char* name, std::vector<std::string> texts) {
 
 std::string write_mat_file(drivers::PartialFile& out, const std::function<bool(MatFile&)>& fill) {
   errno = 0;
-  // A header of our own: matio's has the date in it. And the file that is open, not its name.
+  // matio's header contains the date, so a fixed header is used. /proc/self/fd opens the file
+  // itself, not its name.
   const auto header = fmt::format("MATLAB 5.0 MAT-file, framewatch {}", FRAMEWATCH_VERSION);
   const auto name = fmt::format("/proc/self/fd/{}", out.descriptor());
   mat_t* const opened = Mat_CreateVer(name.c_str(), header.c_str(), MAT_FT_MAT5);

@@ -10,26 +10,26 @@ struct _mat_t;
 
 namespace framewatch::daemon {
 
-/// Writes the variables of a MATLAB file, version 5. Each call returns false when it fails.
+/// Writes variables into a MATLAB file, version 5. Each call returns false on failure.
 class MatFile {
  public:
-  /// Largest size of a variable in that format.
+  /// Largest variable in that format.
   static constexpr std::size_t kMaxBytes = std::size_t{1} << 31;
 
   explicit MatFile(_mat_t* file) : file_(file) {}
-  /// rows x columns from values in row-major order.
+  /// Writes a matrix of `columns` columns from `values` in row-major order.
   [[nodiscard]] bool matrix(const char* name, const std::vector<double>& values,
                             std::size_t columns);
-  /// A column of texts.
+  /// Writes a column of texts.
   [[nodiscard]] bool texts(const char* name, std::vector<std::string> texts);
 
  private:
   _mat_t* file_;
 };
 
-/// Creates a file from what `fill` writes: a PartialFile, renamed when it is complete. The same
-/// content gives the same bytes. Returns an empty string, or the reason of a failure; then no file
-/// is left.
+/// Creates a file with the variables that `fill` writes, as a PartialFile that is renamed when
+/// complete. Equal content gives equal bytes. Returns an empty string, or the reason of a failure;
+/// then no file is left.
 std::string write_mat_file(drivers::PartialFile& out, const std::function<bool(MatFile&)>& fill);
 std::string write_mat_file(const std::string& path, const std::function<bool(MatFile&)>& fill);
 

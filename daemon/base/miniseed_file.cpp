@@ -14,14 +14,14 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMaxCounts = 65536;  // that wait for a record
+constexpr std::size_t kMaxCounts = 65536;  // counts that wait for a record
 constexpr int kRecordBytes = 512;
 // Steim-2 holds differences of 30 bits.
 constexpr std::int32_t kMaxCount = (1 << 28) - 1;
 
 struct FreeRecord {
   void operator()(MSRecord* record) const {
-    record->datasamples = nullptr;  // not its own
+    record->datasamples = nullptr;  // the record does not own them
     msr_free(&record);
   }
 };

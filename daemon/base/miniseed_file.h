@@ -9,23 +9,23 @@
 
 namespace framewatch::daemon {
 
-/// The name of a channel in SEED: codes of 2, 5, 2 and 3 characters.
+/// SEED name of a channel: codes of 2, 5, 2 and 3 characters.
 struct SeedChannel {
   std::string network, station, location, channel;
 };
 
-/// Location code 01, 02, ... and channel code such as HN1 (band by rate, N an accelerometer, 1 an
-/// axis whose direction SEED does not know) of channel number `index`, from 0.
+/// Returns the location code 01, 02, ... and a channel code such as HN1 for channel number `index`
+/// from 0: band by rate, N for accelerometer, 1 for an axis of unknown direction.
 SeedChannel seed_channel(const std::string& network, const std::string& station, std::size_t index,
                          double rate_hz);
 
-/// Writes integers as miniSEED 2: Steim-2, records of 512 bytes, times in us. A new record begins
-/// where the time of a sample is half a sample or more away from what the rate says. The file is a
+/// Writes integers as miniSEED 2 with Steim-2, records of 512 bytes and times in us. A new record
+/// begins where a sample's time differs by half a sample or more from the rate. The file is a
 /// PartialFile that close() renames.
 class MiniseedFile {
  public:
   MiniseedFile(std::vector<SeedChannel> channels, double rate_hz);
-  /// Removes the partial file when close() was not called.
+  /// Removes the partial file unless close() was called.
   ~MiniseedFile();
   MiniseedFile(const MiniseedFile&) = delete;
   MiniseedFile& operator=(const MiniseedFile&) = delete;
@@ -34,7 +34,7 @@ class MiniseedFile {
   [[nodiscard]] bool put(std::size_t channel, std::int64_t time_us, std::int32_t count);
   [[nodiscard]] bool close();
   const std::string& error() const { return error_; }
-  /// "XX.FRAME.01.HN1".
+  /// Returns a name such as "XX.FRAME.01.HN1".
   std::string seed_name(std::size_t channel) const;
 
  private:

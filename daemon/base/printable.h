@@ -1,20 +1,46 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace framewatch::daemon {
 
+/// One character of a text.
+struct CodePoint {
+  std::uint32_t value = 0;
+  std::size_t bytes = 0;  ///< 0 if the bytes are not UTF-8
+};
+
+/// Returns the first character of a nonempty text.
+CodePoint first_character(std::string_view text);
+
+/// Returns the text with the markup characters of HTML escaped: & < > and quotes.
+std::string html_text(const std::string& text);
+
+enum class Tone { good, doubtful, bad, strong };
+
+/// Returns true if the stream is a terminal with colors: TERM is not "dumb", and NO_COLOR is unset
+/// or empty (https://no-color.org).
+bool takes_colour(std::FILE* stream);
+
+/// Returns the text in the tone's color if the stream takes colors, else the text. Make text from
+/// outside printable() first.
+std::string toned(Tone tone, const std::string& text, std::FILE* stream);
+
 inline constexpr std::size_t kMaxPrinted = 4096;  ///< bytes
 
-/// Text of unknown origin as one line that a terminal, a journal or an environment may have:
-/// control characters (C0, DEL, C1, line separators, those that turn the direction of writing) and
-/// bytes that are no UTF-8 as escapes ("\n", "\x1b", "\u202e"). Longer than `most` bytes, it is cut
-/// and ends in "...". Text that has been through it is not changed again.
+/// Returns text of unknown origin as one line for a terminal, journal or environment variable.
+/// Escapes control characters (C0, DEL, C1, line separators, changes of writing direction) and
+/// bytes that are not UTF-8: "
+/// ", "\x1b", "\u202e". Cuts texts longer than `most` bytes and appends "...". Does not change its
+/// own results.
 std::string printable(std::string_view text, std::size_t most = kMaxPrinted);
 
-/// The same line by line and uncut, for text whose line breaks are the program's own.
+/// Applies printable() to each line without cutting. For text whose line breaks come from the
+/// program.
 std::string printable_lines(std::string_view text);
 
 }  // namespace framewatch::daemon

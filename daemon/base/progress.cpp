@@ -29,7 +29,7 @@ std::string time_left_text(double seconds) {
 
 ProgressLine::ProgressLine(std::string command, bool quiet) : command_(std::move(command)) {
   if (quiet || ::isatty(STDERR_FILENO) != 1) return;
-  // Without a thread for it there is no line, and the work goes on.
+  // Without a thread, the work continues without a progress line.
   (void)drivers::caught([&] {
     drawing_ = std::jthread(
         [this](const std::stop_token& stop) { (void)drivers::caught([&] { draw(stop); }); });

@@ -12,12 +12,12 @@
 
 namespace framewatch::daemon {
 
-/// "8 s left", "4 min left", "2 h 10 min left".
+/// Returns "8 s left", "4 min left" or "2 h 10 min left".
 std::string time_left_text(double seconds);
 
-/// What a command is at, how much of it is done and how long the rest takes: a line on stderr,
-/// drawn twice a second by a thread of its own, when that is a terminal and the work takes over
-/// 2 s. It is gone when the work is done.
+/// A progress line on stderr: the current step, the share done and the time left. A separate thread
+/// draws it twice a second if stderr is a terminal and the work takes over 2 s. The destructor
+/// removes it.
 class ProgressLine {
  public:
   ProgressLine(std::string command, bool quiet);
@@ -26,16 +26,17 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   bool is_on() const { return drawing_.joinable(); }
-  /// share: of the whole that is done, 0..1; 0: not known, and nothing is said of the time left.
+  /// Sets the current step and the share of the work that is done, 0..1. With share 0, the time
+  /// left is unknown and not shown.
   void operator()(const std::string& what, double share);
-  /// From now on the share is asked for whenever the line is drawn, by its thread.
+  /// Calls `share` from the drawing thread whenever it draws the line.
   void follow(const std::string& what, std::function<double()> share);
-  /// How much of these files this process has read, each `times` over. A zstd file does not say how
-  /// much is in it, and nothing is said of the time left.
+  /// Shows how much of these files this process has read, if it reads each `times` times. Shows no
+  /// time left for zstd files, whose content has an unknown size.
   void follow_reading(const std::string& what, const std::vector<std::string>& paths, int times);
-  /// From now on shares are of another whole, which begins now.
+  /// Starts a new part: later shares and times refer to it.
   void part_begins();
-  double elapsed_s() const;  ///< of the part
+  double elapsed_s() const;  ///< since the part began
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -43,7 +44,7 @@ class ProgressLine {
   std::string text() const;
 
   std::string command_;
-  mutable std::mutex mutex_;  ///< of what follows
+  mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable_any wake_;
   std::string what_;
   double share_ = 0;
@@ -53,17 +54,17 @@ class ProgressLine {
   std::jthread drawing_;
 };
 
-/// Percent, rate and time left of work that is counted.
+/// Shows percent, rate and time left of counted work.
 class Progress {
  public:
-  /// rate_unit: what `done / scale` counts per second.
+  /// `rate_unit`: unit of `done / scale`; the line shows it per second.
   Progress(std::string command, std::int64_t total, std::string rate_unit, double scale, bool quiet)
       : line_(std::move(command), quiet),
         rate_unit_(std::move(rate_unit)),
         total_(total),
         scale_(scale) {}
 
-  /// May be called for every event.
+  /// Call it for every event; it is cheap.
   void operator()(std::int64_t done) {
     if (line_.is_on() && ++calls_ % 128 == 0) show(done);
   }

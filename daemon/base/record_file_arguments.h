@@ -8,7 +8,7 @@
 
 namespace framewatch::daemon {
 
-/// What the command line says of record files, as text; empty or 0: not declared.
+/// Options of the command line for record files, as text. Empty or 0: not given.
 struct RecordFileArguments {
   std::string unit;         ///< g, mg, gal, mps2, or a number: m/s^2 of one
   std::string station_xml;  ///< a file that says what a count is; instead of a unit
@@ -20,7 +20,7 @@ struct RecordFileArguments {
   bool any() const;
 };
 
-/// The options of the readers; every argument that is none is a problem.
+/// Returns the options of the readers. Appends a problem for each invalid argument.
 drivers::RecordOptions record_options(const RecordFileArguments& arguments,
                                       std::vector<drivers::Problem>& problems);
 

@@ -22,7 +22,7 @@ bool is_servable(const struct stat& file) {
          static_cast<std::uint64_t>(file.st_size) <= kMaxServedBytes;
 }
 
-/// Opens the folder of the last name; false when it is none, or a link.
+/// Opens the folder of the last name. Returns false if it is not a folder, or a link.
 bool open_parent(const std::string& folder, const std::vector<std::string>& names,
                  drivers::Descriptor& parent) {
   if (names.empty() || !std::all_of(names.begin(), names.end(), is_plain_name)) return false;
@@ -33,7 +33,7 @@ bool open_parent(const std::string& folder, const std::vector<std::string>& name
   return parent.get() >= 0;
 }
 
-/// A device is not even opened: that alone may do something.
+/// Never opens a device, because opening alone can have an effect.
 bool is_servable_in(const drivers::Descriptor& parent, const std::string& name) {
   struct stat file {};
   return ::fstatat(parent.get(), name.c_str(), &file, AT_SYMLINK_NOFOLLOW) == 0 &&

@@ -9,12 +9,13 @@ namespace framewatch::daemon {
 
 inline constexpr std::size_t kMaxServedBytes = 16 << 20;
 
-/// The file folder/names[0]/names[1]/..., if it is a regular one of at most kMaxServedBytes and no
-/// link leads to it from the folder on. Never waits for the other end of a pipe or device.
+/// Returns the content of folder/names[0]/names[1]/... Returns nullopt unless it is a regular file
+/// of at most kMaxServedBytes that is reached without links inside the folder. Never waits for the
+/// other end of a pipe or device.
 std::optional<std::string> read_served_file(const std::string& folder,
                                             const std::vector<std::string>& names);
 
-/// Whether read_served_file() would read it.
+/// Returns true if read_served_file() would read the file.
 bool is_served_file(const std::string& folder, const std::vector<std::string>& names);
 
 }  // namespace framewatch::daemon

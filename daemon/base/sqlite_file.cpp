@@ -2,15 +2,58 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <limits>
+#include <system_error>
 #include <utility>
+#include <vector>
 
+#include <fmt/core.h>
+
+#include "daemon/base/utc_time.h"
 #include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kDamagedKept = 3;
+constexpr const char* kDamagedEnding = ".corrupt-";
+constexpr const char* kOfDatabase[] = {"-wal", "-shm", ""};
+
+/// Returns an unused name for the database.
+std::string name_aside(const std::string& database, std::int64_t now_us) {
+  const std::string stamp = database + kDamagedEnding + utc_stamp(now_us);
+  std::string name = stamp;
+  std::error_code none;
+  for (int i = 2; fs::exists(fs::symlink_status(name, none)); ++i)
+    name = fmt::format("{}_{}", stamp, i);
+  return name;
+}
+
+void remove_least(const fs::path& database) {
+  const std::string begin = database.filename().string() + kDamagedEnding;
+  const fs::path directory = database.has_parent_path() ? database.parent_path() : ".";
+  std::vector<std::pair<std::int64_t, std::string>> found;
+  std::error_code none;
+  for (fs::directory_iterator at(directory, none), end; !none && at != end; at.increment(none)) {
+    const std::string name = at->path().filename().string();
+    if (!name.starts_with(begin) || name.ends_with("-wal") || name.ends_with("-shm")) continue;
+    std::error_code failure;
+    const auto bytes = at->file_size(failure);
+    found.emplace_back(failure ? 0 : static_cast<std::int64_t>(bytes), at->path().string());
+  }
+  if (found.size() <= kDamagedKept) return;
+  std::sort(found.rbegin(), found.rend());
+  for (std::size_t i = kDamagedKept; i < found.size(); ++i)
+    for (const char* beside : kOfDatabase) fs::remove(found[i].second + beside, none);
+}
 
 constexpr int kPatience_ms = 5000;  // while another process writes
 
@@ -20,6 +63,24 @@ bool means_corrupt(int result) {
 }
 
 }  // namespace
+
+void set_aside_database(const std::string& database, std::int64_t now_us, const std::string& reason,
+                        SetAside& out) {
+  const std::string name = name_aside(database, now_us);
+  out.problem.clear();
+  // Rename the log first: SQLite would apply the old log to a new database.
+  for (const char* beside : kOfDatabase) {
+    if (std::rename((database + beside).c_str(), (name + beside).c_str()) == 0) continue;
+    if (errno == ENOENT) continue;
+    out.problem = fmt::format("{} is corrupt and cannot be set aside: {}", database + beside,
+                              std::strerror(errno));
+    return;
+  }
+  ++out.count;
+  out.path = name;
+  out.reason = reason;
+  remove_least(database);
+}
 
 void SqliteStatement::finalize(sqlite3_stmt* statement) {
   sqlite3_finalize(statement);
@@ -65,7 +126,7 @@ bool SqliteStatement::row() {
 
 bool SqliteStatement::run() {
   const bool good = step() == SQLITE_DONE;
-  // A reset would forget why.
+  // A reset would discard the error.
   if (good) again();
   return good;
 }
@@ -112,7 +173,7 @@ bool SqliteFile::fail() {
   return false;
 }
 
-/// SQLite would wait for somebody to write into a FIFO.
+/// SQLite would block on a FIFO without a writer.
 bool SqliteFile::is_file(const std::string& path) {
   error_ = drivers::is_absent(path) ? "" : drivers::why_no_file(path);
   return error_.empty();

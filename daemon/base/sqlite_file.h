@@ -1,3 +1,5 @@
+struct sqlite3;
+struct sqlite3_stmt;
 #pragma once
 
 #include <cstdint>
@@ -8,15 +10,26 @@
 #include <string_view>
 #include <vector>
 
-struct sqlite3;
-struct sqlite3_stmt;
-
 namespace framewatch::daemon {
 
-/// What went wrong in a database since its last transaction began, or since open().
+/// SQLite databases that were set aside since the program started.
+struct SetAside {
+  std::int64_t count = 0;
+  std::string path;     ///< path of the last one
+  std::string reason;   ///< why it was set aside
+  std::string problem;  ///< why a corrupt database could not be set aside; else empty
+};
+
+/// Renames a corrupt SQLite database and its write-ahead log to DATABASE.corrupt-TIME, so that a
+/// new one can be created and a person can inspect the old one. Keeps the three largest of those
+/// files and removes the others. `now_us`: time of the host's clock.
+void set_aside_database(const std::string& database, std::int64_t now_us, const std::string& reason,
+                        SetAside& out);
+
+/// Failures of a database since its last transaction began, or since open().
 struct SqliteFailure {
   bool any = false;
-  bool corrupt = false;  ///< the file is no database, or not a sound one
+  bool corrupt = false;  ///< the file is damaged or is not a database
   std::string text;      ///< of the statement that failed first
 };
 
@@ -33,8 +46,8 @@ class SqliteStatement {
   SqliteStatement& bind(int at, std::string_view text);
   SqliteStatement& bind(int at, std::span<const double> values);
 
-  /// True: there is a row. False: there is none, or the step failed. After a failure every later
-  /// step of the file fails too, and with them the transaction.
+  /// Returns true if there is a row. Returns false at the end or after a failure. After a failure
+  /// every later step of the file fails, and with them the transaction.
   bool row();
   /// Runs a statement that returns no rows, and resets it for other values.
   bool run();
@@ -73,9 +86,9 @@ class SqliteFile {
   SqliteStatement prepare(std::string_view sql);
   /// Runs `work` as one transaction: all of it or nothing is stored.
   [[nodiscard]] bool transaction(const std::function<bool()>& work);
-  /// Whether a statement failed since the last transaction began, or since open().
+  /// Returns true if a statement failed since the last transaction began, or since open().
   bool failed() const { return failure_.any; }
-  /// Whether the file is damaged: found by a call that failed, since open().
+  /// Returns true if a call since open() failed because the file is damaged.
   bool corrupt() const { return failure_.corrupt; }
   const std::string& error() const { return error_.empty() ? failure_.text : error_; }
 

@@ -6,18 +6,73 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/html_text.h"
+#include "daemon/base/printable.h"
 
 namespace framewatch::daemon {
 namespace {
+
+constexpr double kMargin = 0.04;  ///< beyond the data, share of their range
+
+/// Returns the largest step of 1, 2 or 5 times a power of ten with at least `wanted` steps in a
+/// range.
+double round_step(double range, int wanted) {
+  const double raw = range / wanted;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  for (const double factor : {5.0, 2.0})
+    if (factor * power <= raw) return factor * power;
+  return power;
+}
+
+std::string number(double value, double step) {
+  const double size = std::max(std::abs(value), step);
+  if (size >= 1e6 || step < 1e-5) return fmt::format("{:.6g}", value);
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+  return fmt::format("{:.{}f}", std::abs(value) < 1e-9 * step ? 0.0 : value, decimals);
+}
+
+std::vector<SvgTick> powers_of_ten(const SvgAxis& axis, int wanted) {
+  const int first = static_cast<int>(std::ceil(std::log10(axis.low) - 1e-9));
+  const int last = static_cast<int>(std::floor(std::log10(axis.high) + 1e-9));
+  const int every = std::max(1, (last - first + wanted) / wanted);
+  std::vector<SvgTick> out;
+  for (int power = first; power <= last; power += every) {
+    const double value = std::pow(10.0, power);
+    out.push_back(
+        {value, std::abs(power) <= 4 ? fmt::format("{:g}", value) : fmt::format("1e{}", power)});
+  }
+  return out;
+}
+
+/// Colors of Okabe and Ito, which also differ in lightness; brighter variants on black.
+constexpr const char* kLight[] = {"#0072b2", "#d55e00", "#009e73", "#aa4499",
+                                  "#b27d00", "#3d9ad1", "#7f7f7f"};
+constexpr const char* kDark[] = {"#4da6e8", "#ff8c42", "#2fce9f", "#e39bd0",
+                                 "#f2b93b", "#8fd3fb", "#a0a0a0"};
+
+std::string variables(const char* const (&colors)[7], const char* grid) {
+  std::string out = fmt::format("--grid:{};", grid);
+  for (int i = 0; i < 7; ++i) out += fmt::format("--s{}:{};", i, colors[i]);
+  return out;
+}
+
+constexpr const char* kMarks =
+    ".plot{max-width:100%;height:auto;font:11px system-ui,sans-serif;color:inherit}"
+    ".plot text{fill:currentColor}.plot .ti{font-weight:600;font-size:12px}"
+    ".plot .ye{text-anchor:end}.plot .xe{text-anchor:middle}"
+    ".plot .g{stroke:var(--grid);stroke-width:1}"
+    ".plot .o{fill:none;stroke:currentColor;stroke-width:.8;opacity:.6}"
+    ".plot .r{stroke:currentColor;stroke-width:1;stroke-dasharray:2 3;opacity:.7}"
+    ".plot .l{fill:none;stroke-width:1.6}.plot .t{fill:none;stroke-width:.8;opacity:.75}"
+    ".plot .d{stroke-dasharray:6 4}"
+    ".plot .b{fill:var(--page);stroke-width:1.2}.plot .m{stroke-width:2.4}";
 
 constexpr double kLeft = 72, kRight = 14, kBottom = 42, kTop = 10;  // px around the plotting area
 constexpr double kFromEdge = 12;                                    // of the label beside it
 constexpr double kLine = 17;                                        // px, title and legend
 constexpr double kCharacter = 6.1;                                  // px, mean width in the legend
-constexpr double kFar = 1e4;  // px: what lies further outside is cut before it is written
+constexpr double kFar = 1e4;  // px; points farther outside are clipped
 
-/// The plotting area: pixels of its own, clipped by a nested svg element.
+/// The plotting area. A nested svg element with separate pixel coordinates clips it.
 struct Area {
   SvgAxis x, y;
   double left, top, width, height;
@@ -42,7 +97,7 @@ struct Pixel {
   double x, y;
 };
 
-/// Points of one pixel column become their first, extremes and last, when there are too many.
+/// Reduces too many points of one pixel column to the first, the extremes and the last.
 std::vector<Pixel> thinned(const std::vector<Pixel>& all, double width) {
   if (static_cast<double>(all.size()) < 4 * width) return all;
   std::vector<Pixel> out;
@@ -162,7 +217,7 @@ std::string frame(const Area& a) {
   return out;
 }
 
-/// Sample of a series in the legend, 18 px wide, then its name.
+/// Draws a sample of a series in the legend, 18 px wide, then its name.
 std::string legend_entry(const SvgSeries& s, double x, double y) {
   if (is_line(s.mark))
     return fmt::format("<g class=\"s{}\">{}</g>", s.color,
@@ -176,6 +231,66 @@ std::string legend_entry(const SvgSeries& s, double x, double y) {
 }
 
 }  // namespace
+
+SvgAxis fitted(SvgAxis axis, const std::vector<double>& values) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double value : values) {
+    if (!std::isfinite(value) || (axis.logarithmic && value <= 0)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!axis.categories.empty()) {
+    low = 0.5;
+    high = static_cast<double>(axis.categories.size()) + 0.5;
+  } else if (low > high) {
+    low = axis.logarithmic ? 0.1 : 0.0;
+    high = 1;
+  } else if (axis.logarithmic) {
+    low /= 1.5;
+    high *= 1.5;
+  } else {
+    if (!std::isnan(axis.low)) low = axis.low;
+    if (!std::isnan(axis.high)) high = axis.high;
+    const double range = high > low ? high - low : std::max(1e-12, std::abs(high));
+    low -= kMargin * range;
+    high += kMargin * range;
+  }
+  if (std::isnan(axis.low)) axis.low = low;
+  if (std::isnan(axis.high)) axis.high = high;
+  if (!(axis.high > axis.low)) axis.high = axis.low + std::max(1e-12, std::abs(axis.low));
+  return axis;
+}
+
+std::vector<SvgTick> ticks(const SvgAxis& axis, int wanted) {
+  std::vector<SvgTick> out;
+  if (!axis.categories.empty()) {
+    for (std::size_t i = 0; i < axis.categories.size(); ++i)
+      out.push_back({static_cast<double>(i + 1), axis.categories[i]});
+    return out;
+  }
+  if (axis.logarithmic) return powers_of_ten(axis, wanted);
+  const double step = round_step(axis.high - axis.low, wanted);
+  const double first = std::ceil(axis.low / step - 1e-9);
+  const double last = std::floor(axis.high / step + 1e-9);
+  for (double i = first; i <= last; ++i) out.push_back({i * step, number(i * step, step)});
+  return out;
+}
+
+double position(const SvgAxis& axis, double value) {
+  if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
+  return value > 0 ? std::log(value / axis.low) / std::log(axis.high / axis.low)
+                   : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string svg_style() {
+  const std::string light = variables(kLight, "#e4e4e4"), dark = variables(kDark, "#3a3a3a");
+  std::string out = fmt::format(
+      ":root{{{}}}@media screen and (prefers-color-scheme:dark){{:root{{{}}}}}", light, dark);
+  out += kMarks;
+  for (int i = 0; i < 7; ++i)
+    out += fmt::format(".plot .s{0}{{stroke:var(--s{0})}}.plot .f{0}{{fill:var(--s{0})}}", i);
+  return out;
+}
 
 SvgPlot::SvgPlot(std::string title, SvgAxis x, SvgAxis y, int width, int height)
     : title_(std::move(title)),

@@ -1,25 +1,57 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "daemon/base/svg_axis.h"
 #include "estimator/identify/estimate/estimate.h"
 
 namespace framewatch::daemon {
 
-/// How a series is drawn. Series differ by mark as well as by colour: colour alone is not enough.
+/// An axis of a plot.
+struct SvgAxis {
+  std::string label;                                      ///< quantity and unit: "stiffness, kN/m"
+  double low = std::numeric_limits<double>::quiet_NaN();  ///< NaN takes it from the data
+  double high = std::numeric_limits<double>::quiet_NaN();
+  bool logarithmic = false;                  ///< only values > 0 are drawn
+  std::vector<std::string> categories = {};  ///< names at 1, 2, ... instead of numbers
+};
+
+struct SvgTick {
+  double value;
+  std::string label;
+};
+
+/// Returns the axis with both ends set. A NaN end is set slightly beyond `values`, ignoring NaN and
+/// infinity, or half a category beyond the first or last category.
+SvgAxis fitted(SvgAxis axis, const std::vector<double>& values);
+
+/// Returns about `wanted` round numbers between the ends: 1, 2 or 5 times a power of ten.
+/// Logarithmic axes get powers of ten; categories get one tick each.
+std::vector<SvgTick> ticks(const SvgAxis& axis, int wanted);
+
+/// Returns the position of a value on a fitted axis: 0 at low, 1 at high, NaN if it cannot be
+/// drawn.
+double position(const SvgAxis& axis, double value);
+
+/// Returns the CSS of plots: seven colors that are distinct without red-green vision (0 blue, 1
+/// vermilion, 2 green, 3 purple, 4 orange, 5 sky, 6 gray), for light, dark and paper.
+std::string svg_style();
+
+/// How a series is drawn. Series differ by mark as well as by color, because color alone is not
+/// enough.
 enum class SvgMark { line, thin_line, dashed, dots, rings, bars };
 
 /// Points of one plot. NaN breaks a line; a line with more points than pixels keeps its extremes.
 struct SvgSeries {
-  std::string name;  ///< in the legend; empty: not in it
+  std::string name;  ///< in the legend; empty leaves it out
   int color = 0;     ///< 0..6, see svg_style()
   SvgMark mark = SvgMark::line;
   std::vector<double> x;
   std::vector<double> y;
-  std::vector<double> error = {};  ///< half length of an error bar at each point; empty: none
+  std::vector<double> error =
+      {};  ///< half length of the error bar at each point; empty for no bars
 };
 
 /// A box as MATLAB's boxplot draws it, standing at x.
@@ -39,12 +71,12 @@ struct SvgBox {
 ///   html += plot.svg();
 class SvgPlot {
  public:
-  /// width, height: in pixels at full size; the picture scales to the room it is given.
+  /// `width`, `height`: pixels at full size; the picture scales to the available space.
   SvgPlot(std::string title, SvgAxis x, SvgAxis y, int width = 640, int height = 280);
 
   void add(SvgSeries series) { series_.push_back(std::move(series)); }
   void add(SvgBox box) { boxes_.push_back(std::move(box)); }
-  /// A thin horizontal line across the plot.
+  /// Adds a thin horizontal line across the plot.
   void add_rule(double y) { rules_.push_back(y); }
 
   std::string svg() const;

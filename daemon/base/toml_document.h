@@ -8,7 +8,12 @@
 
 namespace framewatch::daemon {
 
-/// Line and column in a text, from 1; line 0: no particular place.
+/// Explains a line that the TOML parser rejects: in plain words for known mistakes, else as
+/// `description`, the parser's message. `column` is the mistake's character from 1; it is moved if
+/// a better place is known.
+std::string toml_advice(const std::string& description, std::string_view line, int& column);
+
+/// Line and column in a text, from 1. Line 0 means no particular place.
 struct TextPlace {
   int line = 0;
   int column = 0;
@@ -18,18 +23,18 @@ enum class TomlKind { text, integer, number, boolean, array, table, date };
 
 struct TomlEntry;
 
-/// A value of a TOML file with the place where it stands.
+/// A value of a TOML file and its place.
 struct TomlValue {
   TomlKind kind = TomlKind::table;
   TextPlace place;
   std::string text;
-  double number = 0;  ///< of an integer too
+  double number = 0;  ///< also set for integers
   std::int64_t integer = 0;
   bool boolean = false;
   std::vector<TomlValue> items;    ///< of an array
   std::vector<TomlEntry> entries;  ///< of a table, in the order of the file
 
-  /// Entry of a table; null when there is none.
+  /// Returns the entry of a table, or null if `key` is missing.
   const TomlEntry* find(std::string_view key) const;
   /// As a message names it: `the text "5 s"`, `-3`, `a list of 2`.
   std::string described() const;
@@ -47,12 +52,13 @@ struct TextProblem {
   std::string elsewhere = {};  ///< file:line in another file, in place of `place`
 };
 
-/// Tables of [[name]] in `table`; a problem when it is something else, none when it is absent.
+/// Returns the tables of [[name]] in `table`, or none if it is absent. Appends a problem if it is
+/// something else.
 std::vector<const TomlValue*> tables_of(const TomlValue& table, std::string_view name,
                                         std::vector<TextProblem>& problems);
 
-/// Parses TOML 1.0. A key given twice is a problem and the first is kept; any other error of syntax
-/// ends the reading with an empty optional.
+/// Parses TOML 1.0. Keeps the first of two equal keys and appends a problem. Returns nullopt and
+/// appends a problem after any other syntax error.
 std::optional<TomlValue> parse_toml(std::string text, std::vector<TextProblem>& problems);
 
 }  // namespace framewatch::daemon

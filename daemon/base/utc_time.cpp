@@ -26,7 +26,7 @@ struct Civil {
   int hour, minute, second, microsecond;
 };
 
-/// Of years 0 to 9999: what a damaged message says beyond them is the nearest of these.
+/// Clamps to the years 0 to 9999, because damaged messages can have any time.
 Civil civil(std::int64_t time_us) {
   using Time = ch::sys_time<ch::microseconds>;
   constexpr Time kEarliest = ch::sys_days(ch::year(0) / 1 / 1);
@@ -55,7 +55,7 @@ std::optional<std::int64_t> microseconds(int year, int month, int day, int hour,
   return ((days * 24 + hour) * 60 + minute) * 60 * kSecond_us + std::llround(second * 1e6);
 }
 
-/// The number that is all of a text.
+/// Parses a number that takes up the whole text. Returns false for anything else.
 template <typename Number>
 bool whole(std::string_view text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

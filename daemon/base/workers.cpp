@@ -12,7 +12,7 @@
 
 namespace framewatch::daemon {
 
-/// The threads beside the caller's, which begin with the first call that has work for them.
+/// The additional threads. They start with the first call that has work for them.
 class Workers::Crew {
  public:
   explicit Crew(int threads) : threads_(std::max(1, threads)) {}
@@ -36,7 +36,7 @@ class Workers::Crew {
     Batch& own = *at;
     changed_.notify_all();
     while (own.begun < own.count) take_piece(own, lock);
-    // What the others have not done yet may have pieces of its own.
+    // Unfinished pieces of other threads can start further pieces: help with those.
     while (own.running > 0)
       if (Batch* other = any_left(at))
         take_piece(*other, lock);
@@ -59,7 +59,7 @@ class Workers::Crew {
   void begin_threads() {
     try {
       for (int t = 1; t < threads_; ++t) others_.emplace_back([this] { help(); });
-    } catch (const std::system_error&) {  // no more threads: those there are do it
+    } catch (const std::system_error&) {  // no more threads available: work with those started
     }
   }
 
@@ -72,7 +72,8 @@ class Workers::Crew {
         changed_.wait(lock);
   }
 
-  /// The newest batch from `oldest` on with a piece that nobody has begun: older ones wait for it.
+  /// Returns the newest batch, not before `oldest`, with a piece that is not started. Older batches
+  /// wait for it.
   Batch* any_left(std::list<Batch>::iterator oldest) {
     for (auto at = batches_.end(); at != oldest;)
       if (--at; at->begun < at->count) return &*at;

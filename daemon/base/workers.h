@@ -7,11 +7,12 @@
 namespace framewatch::daemon {
 
 /// Runs independent pieces of work on several threads and reports progress. The result of a piece
-/// must not depend on its thread or on the order. A piece may have pieces of its own run: threads
-/// that have nothing else to do take them.
+/// must not depend on its thread or the order. A piece may run further pieces; idle threads take
+/// them.
 class Workers {
  public:
-  /// (what is being done, pieces done, pieces in all); called by one thread at a time.
+  /// Called with the step's name, the pieces done and the number of pieces, by one thread at a
+  /// time.
   using Progress = std::function<void(const std::string&, int, int)>;
 
   explicit Workers(int threads, Progress progress = {});
@@ -19,10 +20,10 @@ class Workers {
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  /// Calls work(0) .. work(count - 1), each once; returns when all are done. Throws what one of
-  /// them threw, when the others have ended.
+  /// Calls work(0) .. work(count - 1) once each and returns when all are done. Rethrows an
+  /// exception of one of them after the others have ended.
   void run(const std::string& what, int count, const std::function<void(int)>& work) const;
-  /// The same without progress.
+  /// Does the same without reporting progress.
   void run_within(int count, const std::function<void(int)>& work) const;
 
  private:

@@ -1,26 +1,41 @@
 #include "daemon/command_line/command_line.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/base/last_resort.h"
-#include "daemon/base/terminal_colour.h"
+#include "daemon/base/printable.h"
 #include "daemon/command_line/command_list.h"
-#include "daemon/command_line/fleet_program.h"
 #include "daemon/command_line/option_entries.h"
 
 namespace framewatch::daemon {
-
 namespace {
+
+constexpr const char* kFleetProgram = "framewatch-fleet";
+
+std::string beside_this_program() {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? kFleetProgram : (self.parent_path() / kFleetProgram).string();
+}
 
 void say(const Program& program, const std::string& problem) {
   fmt::print(stderr, "{} {}\n", toned(Tone::bad, program.name + ":", stderr), problem);
 }
 
-/// What messages call a command: "run"; "fleet task" of the program "framewatch fleet".
+/// Returns the name of a command in messages: "run", or "fleet task" for the program "framewatch
+/// fleet".
 std::string said_name(const Program& program, const std::string& command) {
   const std::size_t space = program.name.find(' ');
   return space == std::string::npos ? command : program.name.substr(space + 1) + " " + command;
@@ -29,12 +44,12 @@ std::string said_name(const Program& program, const std::string& command) {
 int bad_usage(const Program& program, const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
-    say(program, fmt::format("which command? `{} help` lists them", program.name));
+    say(program, fmt::format("no command given; run `{} help` for a list", program.name));
     return kBadInput;
   }
   const std::string name = chosen.front()->get_name();
   refuse(said_name(program, name), error.what());
-  fmt::print(stderr, "`{} help {}` says how it is used\n", program.name, name);
+  fmt::print(stderr, "run `{} help {}` for its usage\n", program.name, name);
   return kBadInput;
 }
 
@@ -67,6 +82,45 @@ int parse_and_run(const Program& program, int argc, const char* const* argv) {
 
 }  // namespace
 
+/// Returns true for commands of framewatch-fleet, a separate package because it alone needs NATS
+/// and PostgreSQL.
+bool is_of_fleet(std::string_view command) {
+  return command == "fleet" || command == "uplink";
+}
+
+/// Replaces this process by framewatch-fleet, found beside this program or in PATH: `framewatch
+/// fleet task` runs `framewatch-fleet task`, `framewatch uplink` runs `framewatch-fleet uplink`.
+/// Returns only if there is no such program: prints what is missing and returns kBadInput.
+int become_fleet_program(int argc, const char* const* argv) {
+  std::string name = kFleetProgram;
+  std::vector<std::string> words(argv + (argv[1] == std::string_view("fleet") ? 2 : 1),
+                                 argv + argc);
+  std::vector<char*> arguments{name.data()};
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(beside_this_program().c_str(), arguments.data());
+  ::execvp(kFleetProgram, arguments.data());
+  return refuse(
+      argv[1],
+      errno == ENOENT
+          ? "needs the program framewatch-fleet; install the Debian package framewatch-fleet"
+          : std::string(kFleetProgram) + ": " + std::strerror(errno));
+}
+
+void add_fleet(CommandList& commands) {
+  commands
+      .add("fleet",
+           "manage many buildings: archives, a hub, an overview (program framewatch-fleet)")
+      ->footer("`framewatch fleet help` lists its commands.");
+}
+
+void add_uplink(CommandList& commands) {
+  commands
+      .add("uplink",
+           "send the history of `run` to a hub of many buildings (program framewatch-fleet)")
+      ->footer("`framewatch uplink --help` lists its options.");
+}
+
 int run_program(const Program& program, int argc, const char* const* argv) {
   prepare_last_resort();
   return run_to_the_end([&] { return parse_and_run(program, argc, argv); });
@@ -76,9 +130,9 @@ int run_command_line(int argc, const char* const* argv) {
   if (argc > 1 && is_of_fleet(argv[1])) return become_fleet_program(argc, argv);
   const Program program{
       "framewatch",
-      "framewatch: stiffness and damping of every frame and floor panel of a building,\n"
-      "from its accelerometers, while it moves.",
-      "A file called - is standard input where one is read, standard output where one is written.",
+      "framewatch estimates the stiffness and damping of every frame and floor panel of "
+      "a\nbuilding from its accelerometers, while it moves.",
+      "The file name - is standard input for reading and standard output for writing.",
       {add_demo,     add_run,      add_replay,    add_diff,        add_repair,
        add_refine,   add_diagnose, add_adopt,     add_init,        add_check,
        add_convert,  add_simulate, add_reproduce, add_report,      add_serve,

@@ -47,7 +47,7 @@ void CommandList::reads_file(std::string& path) {
 int CommandList::run_chosen() const {
   if (!chosen_) return kBadInput;
   if (reads_standard_input_ > 1)
-    return refuse(name_of_chosen_, "- is standard input, which is one file only");
+    return refuse(name_of_chosen_, "- is standard input and can be given only once");
   if (reads_standard_input_ == 1)
     if (const std::string why = drivers::keep_standard_input(); !why.empty())
       return refuse(name_of_chosen_, "standard input " + why);
@@ -64,29 +64,32 @@ void add_installed_config(CLI::App* command, std::string& config) {
 }
 
 void add_url(CLI::App* command, std::string& url) {
-  command->add_option("--url", url, "LCM provider instead of the configuration's");
+  command->add_option("--url", url, "LCM provider to use instead of the configuration's");
 }
 
 void add_json(CLI::App* command, bool& json) {
-  command->add_flag("--json", json, "print what a program would read");
+  command->add_flag("--json", json, "print JSON for programs");
 }
 
 void add_record_options(CLI::App* command, RecordFileArguments& record) {
-  command->add_option("--unit", record.unit,
-                      "of a file that does not say it: g, mg, gal, mps2, or the m/s^2 of one");
+  command->add_option(
+      "--unit", record.unit,
+      "unit of a file that does not state it: g, mg, gal, mps2, or the m/s^2 of one");
   command
       ->add_option("--station-xml", record.station_xml,
-                   "StationXML of the network of a miniSEED or SAC file, which says that and more")
+                   "StationXML of a miniSEED or SAC file's network, with units and more")
       ->type_name("FILE");
-  command->add_option("--step", record.step_s, "seconds between samples of a file without time");
+  command->add_option("--step", record.step_s, "seconds between samples of a file without times");
   command->add_option("--time", record.time,
                       "title of the column (or MATLAB variable) with the times");
-  command->add_option("--time-unit", record.time_unit, "of such a column: s, ms, us or ns");
-  command->add_option("--zone", record.zone, "of time stamps without one: Z, or such as +09:00");
-  command->add_option("--decimal", record.decimal, "comma or point, where a file leaves it open");
+  command->add_option("--time-unit", record.time_unit, "unit of that column: s, ms, us or ns");
+  command->add_option("--zone", record.zone,
+                      "time zone of time stamps without one: Z, or an offset such as +09:00");
+  command->add_option("--decimal", record.decimal,
+                      "decimal mark if a file leaves it open: comma or point");
   command
       ->add_option("--columns", record.columns,
-                   "titles of the columns (or MATLAB variables, SEED channels) to take: A,B,...")
+                   "titles of the columns (or MATLAB variables, SEED channels) to read: A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
@@ -104,8 +107,8 @@ void add_max_size(CLI::App* command) {
           [](const std::uint64_t& bytes) {
             drivers::set_unpack_limit(static_cast<std::int64_t>(bytes));
           },
-          "what a compressed input may unpack to, for example 16GiB (default: 4000 times\n"
-          "its size or 64 MiB, whichever is more, and 4 GiB at most)")
+          "largest unpacked size of a compressed input, for example 16GiB (default: 4000\ntimes "
+          "its size or 64 MiB, whichever is more, but at most 4 GiB)")
       ->type_name("SIZE")
       ->transform(CLI::AsSizeValue(false) & CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 60));
 }

@@ -21,30 +21,31 @@ class CommandList {
  public:
   explicit CommandList(CLI::App& app) : app_(app) {}
 
-  /// The program as it is called: framewatch, or framewatch fleet.
+  /// Returns the program's name: framewatch, or framewatch fleet.
   [[nodiscard]] std::string program() const;
 
-  /// A command without options yet.
+  /// Adds a command without options.
   CLI::App* add(const std::string& name, const std::string& purpose);
 
-  /// Arguments with their defaults; they live as long as the list.
+  /// Returns arguments with their defaults. They live as long as the list.
   template <class Arguments>
   Arguments& arguments() {
     return *std::any_cast<Arguments>(&arguments_.emplace_back(Arguments{}));
   }
 
-  /// What happens when `command` is chosen; returns the exit status. It may throw a CLI::ParseError
-  /// for options that do not go together. `prepare` comes before it, when the options are parsed.
+  /// Sets the action of `command`, which returns the exit status. The action may throw
+  /// CLI::ParseError for options that exclude each other. `prepare` runs first, when the options
+  /// are parsed.
   void set_action(CLI::App* command, std::function<int()> action,
                   std::function<void()> prepare = {});
 
-  /// This option names files to read: "-" is standard input.
+  /// Declares an option that names files to read. "-" means standard input.
   void reads_files(CLI::Option* option);
-  /// The same of one path, in `prepare`.
+  /// Checks one path, in `prepare`.
   void reads_file(std::string& path);
 
-  /// Runs the chosen command, after parsing. Returns its exit status; 2 when none was chosen, or
-  /// when standard input, which it wants, cannot be had.
+  /// Runs the chosen command after parsing and returns its exit status. Returns 2 if no command was
+  /// chosen or its standard input cannot be read.
   [[nodiscard]] int run_chosen() const;
 
  private:
@@ -61,15 +62,15 @@ void add_config(CommandList& commands, CLI::App* command,
 void add_installed_config(CLI::App* command, std::string& config);  ///< CONFIG, with a default
 void add_url(CLI::App* command, std::string& url);                  ///< --url
 void add_json(CLI::App* command, bool& json);                       ///< --json
-/// --unit, --step and the like: what a record does not say itself.
+/// Adds --unit, --step and similar options for properties that a record does not state.
 void add_record_options(CLI::App* command, RecordFileArguments& record);
-void add_max_size(CLI::App* command);  ///< --max-size, of what compressed input unpacks to
+void add_max_size(CLI::App* command);  ///< --max-size of unpacked input
 
-// help_commands.cpp: what every program has.
+// help_commands.cpp: commands of every program.
 void add_help(CommandList& commands);
 void add_completion(CommandList& commands);
 
-// live_commands.cpp: the daemon and what one does with it while it runs.
+// live_commands.cpp: the daemon and commands for a running daemon.
 void add_demo(CommandList& commands);
 void add_run(CommandList& commands);
 void add_serve(CommandList& commands);
@@ -78,20 +79,20 @@ void add_acknowledge(CommandList& commands);
 void add_tell(CommandList& commands);
 void add_selftest(CommandList& commands);
 
-// record_commands.cpp: where records come from and what they are turned into.
+// record_commands.cpp: sources, conversion and reports of records.
 void add_simulate(CommandList& commands);
 void add_record(CommandList& commands);
 void add_report(CommandList& commands);
 void add_convert(CommandList& commands);
 void add_history(CommandList& commands);
 
-// replay_commands.cpp: logs and estimates from logs.
+// record_commands.cpp: estimates and repair of logs.
 void add_replay(CommandList& commands);
 void add_diff(CommandList& commands);
 void add_repair(CommandList& commands);
 void add_refine(CommandList& commands);
 
-// fleet_program.cpp: listed here, done by framewatch-fleet.
+// command_line.cpp: commands of framewatch-fleet, listed here.
 void add_fleet(CommandList& commands);
 void add_uplink(CommandList& commands);
 

@@ -16,7 +16,7 @@ std::string escaped(const std::string& text, std::string_view special, const cha
   return out;
 }
 
-/// Within '...' of sh: a quote ends the string, stands alone, and begins it again.
+/// Quotes text for '...' of sh: each quote ends the string, is escaped, and begins it again.
 std::string quoted(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -40,7 +40,7 @@ bool is_number(const OptionEntry& option) {
   return option.value == "INT" || option.value == "UINT" || option.value == "FLOAT";
 }
 
-/// Words that an argument of the command can be, none when it is a file.
+/// Returns the words that an argument can be. Empty for a file.
 std::vector<std::string> argument_words(const CommandEntry& command) {
   for (const OptionEntry& option : command.options)
     if (option.is_argument && !option.choices.empty()) return option.choices;

@@ -9,11 +9,11 @@ class App;
 
 namespace framewatch::daemon {
 
-/// One option or argument of a command, as --help lists it.
+/// An option or argument of a command, as listed by --help.
 struct OptionEntry {
   std::string name;                  ///< --out; of an argument LOG
-  std::string value;                 ///< what follows: FILE, INT; empty: a flag
-  std::vector<std::string> choices;  ///< the only values, where they are words
+  std::string value;                 ///< value name: FILE, INT; empty for a flag
+  std::vector<std::string> choices;  ///< the allowed words, if only some are allowed
   std::string text;                  ///< what it is, on one line
   bool is_argument = false;          ///< its place says what it is
   bool is_required = false;
@@ -41,12 +41,12 @@ std::string program_man_page(const std::vector<CommandEntry>& commands);
 /// framewatch-<command>(1).
 std::string command_man_page(const std::string& program, const CommandEntry& command);
 
-/// What in the arguments of the program is no command, or no option of the command, each with what
-/// was probably meant. Empty when there is nothing of the kind. `program`: as it is called.
+/// Returns arguments that are neither a command nor an option of the command, each with the
+/// probable meaning. Returns an empty list if all are known. `program`: its name in messages.
 std::vector<std::string> misspelt(const std::string& program,
                                   const std::vector<CommandEntry>& commands,
                                   const std::vector<std::string>& arguments);
-/// The same of a word that should be a command.
+/// Returns the message about a word that should be a command.
 std::string no_such_command(const std::string& program, const std::vector<CommandEntry>& commands,
                             const std::string& word);
 

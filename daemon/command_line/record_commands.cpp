@@ -3,16 +3,176 @@
 #include "daemon/command_line/command_list.h"
 #include "daemon/monitor/history/history_command.h"
 #include "daemon/tools/commands/convert_command.h"
+#include "daemon/tools/replay/diff_command.h"
+#include "daemon/tools/replay/refine_command.h"
+#include "daemon/tools/replay/repair_command.h"
+#include "daemon/tools/replay/replay_command.h"
 #include "daemon/tools/report/report_command.h"
 #include "daemon/tools/session/record_command.h"
 #include "daemon/tools/simulation/simulate_command.h"
 
 namespace framewatch::daemon {
+namespace {
+
+/// Adds options that replay only parts, or at the daemon's pace.
+void add_parts(CLI::App* command, ReplayArguments& arguments) {
+  command->add_flag(
+      "--one-pass", arguments.one_pass,
+      "estimate in one pass like the daemon. By default a first pass tunes the\nfilters, so no "
+      "window is lost to that. --save-state and --load-state imply\n--one-pass");
+  command
+      ->add_option("--save-state", arguments.save_state,
+                   "save the state to this file, to continue with --load-state")
+      ->type_name("FILE");
+  command
+      ->add_option("--load-state", arguments.load_state,
+                   "continue from the saved state of an earlier replay or of the daemon")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+void add_replay(CommandList& commands) {
+  ReplayArguments& arguments = commands.arguments<ReplayArguments>();
+  CLI::App* command = commands.add(
+      "replay", "estimate from recorded motion, as fast as possible and reproducible to the byte");
+  command->footer(
+      "Exit status: 0 done and as expected; 1 not as --expect requires; 2 bad usage, "
+      "configuration,\nexpectations or input.\nExamples:\n  framewatch replay building.toml "
+      "monday.lcmlog tuesday.lcmlog.zst --out estimates.lcmlog\n  framewatch replay building.toml "
+      "record.csv --json\n  framewatch replay building.toml golden.lcmlog --expect expected.toml "
+      "--junit result.xml");
+  add_config(commands, command, arguments.config);
+  commands.reads_files(command
+                           ->add_option("LOG", arguments.inputs,
+                                        "LCM event logs (plain or .zst), raw logs of a history and "
+                                        "record files\n(CSV), in order of time")
+                           ->required());
+  add_record_options(command, arguments.record);
+  command
+      ->add_option("--out", arguments.out,
+                   "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5); "
+                   ".sqlite\nfor summaries as in a history")
+      ->type_name("FILE");
+  command->add_flag("--boxplot", arguments.boxplot,
+                    "also write boxplot statistics to .csv and .mat");
+  command
+      ->add_option("--floors", arguments.floors,
+                   "file for the accelerations of every floor and the drift ratios of every "
+                   "story,\nalso those without a channel: .csv or .csv.gz")
+      ->type_name("FILE");
+  command
+      ->add_option("--from", arguments.span.from_s,
+                   "skip earlier samples: seconds after the first sample")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--to", arguments.span.to_s,
+                   "skip later samples: seconds after the first sample")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--speed", arguments.speed,
+                   "multiple of real time, by the events' times; pauses over 10 s are\nskipped "
+                   "(default: as fast as possible)")
+      ->check(CLI::Range(1e-3, 1e6));
+  CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
+                                         "also publish on this URL, or on the configuration's");
+  lcm->expected(0, 1)->type_name("[URL]");
+  add_parts(command, arguments);
+  command->add_option("--expect", arguments.expect, "file with the expected result (TOML)")
+      ->type_name("FILE");
+  command->add_option("--write-expect", arguments.write_expect, "write such a file from the result")
+      ->type_name("FILE");
+  command
+      ->add_option("--write-baseline", arguments.write_baseline,
+                   "write a baseline file for [watch] from all windows of the replay")
+      ->type_name("FILE");
+  command
+      ->add_option("--event-reports", arguments.event_reports,
+                   "folder for the reports of [event_report] after strong motion")
+      ->type_name("DIR");
+  command
+      ->add_option("--junit", arguments.junit,
+                   "write the result of --expect to this file, as JUnit XML")
+      ->type_name("FILE");
+  command->add_flag("--salvage", arguments.salvage,
+                    "replay the intact part of a damaged log instead of refusing it");
+  command->add_flag("--quiet", arguments.quiet, "print no progress and no summary");
+  command->add_flag("--json", arguments.json, "print the summary and unexpected results as JSON");
+  add_max_size(command);
+  commands.set_action(command, [&arguments, lcm] {
+    arguments.lcm = lcm->count() > 0;
+    return replay(arguments);
+  });
+}
+
+void add_diff(CommandList& commands) {
+  DiffArguments& arguments = commands.arguments<DiffArguments>();
+  CLI::App* command = commands.add(
+      "diff", "compare two logs of estimates field by field: first and largest difference of each");
+  command->footer(
+      "Exit status: 0 the estimates are the same, byte by byte; 1 they are not; 2 bad usage or "
+      "input.\n"
+      "Example: framewatch diff yesterday.lcmlog today.lcmlog");
+  commands.reads_files(
+      command->add_option("A", arguments.a, "LCM event log, plain or .zst")->required());
+  commands.reads_files(command->add_option("B", arguments.b, "second log")->required());
+  add_json(command, arguments.json);
+  command->add_flag("--quiet", arguments.quiet, "print nothing; only set the exit status");
+  add_max_size(command);
+  commands.set_action(command, [&arguments] { return diff(arguments); });
+}
+
+void add_repair(CommandList& commands) {
+  RepairArguments& arguments = commands.arguments<RepairArguments>();
+  CLI::App* command =
+      commands.add("repair", "copy every intact event of a damaged log and list what was lost");
+  command->footer(
+      "Exit status: 0 intact, or a repaired log was written; 1 damaged, with --check; 2 bad "
+      "usage\nor input. Nothing is written for an intact log.\nExamples:\n  framewatch repair "
+      "night.lcmlog --out night.repaired.lcmlog\n  framewatch repair night.lcmlog --check --json");
+  command->add_option("LOG", arguments.log, "LCM event log, plain or .zst")->required();
+  command
+      ->add_option("--out", arguments.out,
+                   "log to write (default: LOG with .repaired before its ending)")
+      ->type_name("FILE");
+  command->add_flag("--check", arguments.check, "write nothing, only list the damage");
+  add_json(command, arguments.json);
+  add_max_size(command);
+  commands.set_action(command, [&arguments] { return repair(arguments); });
+}
+
+void add_refine(CommandList& commands) {
+  RefineArguments& arguments = commands.arguments<RefineArguments>();
+  CLI::App* command =
+      commands.add("refine",
+                   "compute the maximum-likelihood estimate from one stretch of recorded motion, "
+                   "with the\nsmallest error that any estimate could have (Cramer-Rao bound)");
+  command->footer(
+      "Exit status: 0 refined, 1 not refined (too short, too quiet, ...), 2 bad usage or "
+      "input.\nExample: framewatch refine building.toml record.lcmlog --from 12 --to 22");
+  add_config(commands, command, arguments.config);
+  commands.reads_files(command
+                           ->add_option("LOG", arguments.inputs,
+                                        "LCM event logs and record files (CSV), in order of time")
+                           ->required());
+  add_record_options(command, arguments.record);
+  command->add_option("--from", arguments.from_s, "seconds after the first sample")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--to", arguments.to_s,
+                   "seconds after the first sample (default: one window after --from)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("!--no-prior", arguments.prior, "do not use the design as a prior");
+  add_json(command, arguments.json);
+  add_max_size(command);
+  commands.set_action(command, [&arguments] { return refine(arguments); });
+}
 
 void add_simulate(CommandList& commands) {
   SimulateArguments& arguments = commands.arguments<SimulateArguments>();
-  CLI::App* command =
-      commands.add("simulate", "a virtual building's accelerometers, to LCM, to CAN or to a file");
+  CLI::App* command = commands.add(
+      "simulate", "simulate a building's accelerometers and send them to LCM, CAN or a file");
   command->footer(
       "Examples:\n"
       "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
@@ -23,20 +183,22 @@ void add_simulate(CommandList& commands) {
   command->add_option("--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog")
       ->type_name("FILE");
   CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
-                                         "publish live, on this URL or the configuration's");
+                                         "publish live on this URL, or on the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
   CLI::Option* can = command->add_option(
       "--can", arguments.can_interface,
-      "send the frames of the configuration's CAN nodes, on this interface or the configuration's");
+      "send the frames of the configured CAN nodes on this interface, or on the configuration's");
   can->expected(0, 1)->type_name("[INTERFACE]");
-  command->add_option("--speed", arguments.speed, "of --lcm and --can, times real time")
+  command
+      ->add_option("--speed", arguments.speed,
+                   "speed of --lcm and --can, as a multiple of real time")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
-  command->add_option("--seconds", arguments.seconds, "instead of the scenario's duration")
+  command->add_option("--seconds", arguments.seconds, "duration, instead of the scenario's")
       ->check(CLI::Range(1e-3, 1e6));
-  command->add_option("--truth", arguments.truth, "JSON file to write what is hidden to")
+  command->add_option("--truth", arguments.truth, "write the true values to this JSON file")
       ->type_name("FILE");
-  command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
+  command->add_flag("--quiet", arguments.quiet, "print no progress and no summary");
   add_max_size(command);
   commands.set_action(command, [&arguments, lcm, can] {
     arguments.lcm = lcm->count() > 0;
@@ -48,57 +210,59 @@ void add_simulate(CommandList& commands) {
 void add_record(CommandList& commands) {
   RecordArguments& arguments = commands.arguments<RecordArguments>();
   CLI::App* command = commands.add(
-      "record", "acquisition sessions: raw samples and estimates in logs, and a report at the end");
+      "record", "record test sessions: logs of raw samples and estimates, and a report at the end");
   command->footer(
-      "Checks the channels for 3 s, then records until Ctrl-C, --seconds or --send stop. With\n"
-      "--standby it waits for the live page, or for --send from another terminal.\n"
-      "Exit status: 0 recorded and reported, 1 not everything, 2 bad usage or configuration.\n"
-      "Examples:\n"
-      "  framewatch record table.toml --test \"El Centro 30 %\" --operator me --seconds 20\n"
-      "  framewatch record table.toml --test sweep --trigger 0.2 --pre-trigger 5 --seconds 20\n"
-      "  framewatch record table.toml --standby --out sessions\n"
-      "  framewatch record table.toml --send start --test sweep");
+      "Checks the channels for 3 s, then records until Ctrl-C, --seconds or --send stop. "
+      "With\n--standby it waits for commands of the live page or of --send from another "
+      "terminal.\nExit status: 0 recorded and reported, 1 incomplete, 2 bad usage or "
+      "configuration.\nExamples:\n  framewatch record table.toml --test \"El Centro 30 %\" "
+      "--operator me --seconds 20\n  framewatch record table.toml --test sweep --trigger 0.2 "
+      "--pre-trigger 5 --seconds 20\n  framewatch record table.toml --standby --out sessions\n  "
+      "framewatch record table.toml --send start --test sweep");
   add_config(commands, command, arguments.config);
   add_url(command, arguments.url);
-  command->add_option("--out", arguments.out, "folder that gets a folder per session")
+  command->add_option("--out", arguments.out, "folder for the sessions, one folder each")
       ->type_name("DIR")
       ->capture_default_str();
   SessionRequest& request = arguments.request;
   command->add_option("--test", request.test, "name of the test");
-  command->add_option("--operator", request.operator_name, "who makes it");
-  command->add_option("--notes", request.notes, "what the next reader should know");
+  command->add_option("--operator", request.operator_name, "operator of the test");
+  command->add_option("--notes", request.notes, "notes for the report");
   command->add_option("--seconds", request.length_s, "length after the start or trigger");
   command->add_option("--trigger", request.trigger_mps2,
-                      "arm: begin when a base channel is so far from rest, m/s^2");
+                      "start when a base channel differs from rest by this much, m/s^2");
   CLI::Option* before = command->add_option("--pre-trigger", request.pre_trigger_s,
-                                            "seconds stored from before the trigger (default 5)");
+                                            "seconds to keep from before the trigger (default 5)");
   command->add_option("--tap-test", arguments.tap_s,
-                      "first wait at most so many seconds for a tap next to every sensor, in the\n"
-                      "building's positive direction: tells reversed ones");
+                      "first wait up to this many seconds for a tap next to every sensor, in "
+                      "the\nbuilding's positive direction, to find reversed sensors");
   command->add_option("--wait", arguments.wait_s, "seconds to wait for the first samples")
       ->check(CLI::Range(1, 86400))
       ->capture_default_str();
-  command->add_flag("--by-name", arguments.by_name,
-                    "channels without a source are those that nodes name (channel_table_t)");
-  command->add_flag("!--no-check", arguments.check, "begin without the check of the channels");
-  command->add_flag("--strict", arguments.strict, "record nothing when a channel has a problem");
-  command->add_flag("--standby", arguments.standby, "wait for commands, session after session");
+  command->add_flag(
+      "--by-name", arguments.by_name,
+      "match channels without a source by the names that nodes send (channel_table_t)");
+  command->add_flag("!--no-check", arguments.check, "start without checking the channels");
+  command->add_flag("--strict", arguments.strict, "do not record if a channel has a problem");
+  command->add_flag("--standby", arguments.standby,
+                    "wait for commands, for any number of sessions");
   command
-      ->add_option("--send", arguments.send, "tell the recorder that runs: start, arm, tap or stop")
+      ->add_option("--send", arguments.send,
+                   "send a command to the running recorder: start, arm, tap or stop")
       ->check(CLI::IsMember({"start", "arm", "tap", "stop"}));
   command
       ->add_option("--finish", arguments.finish,
-                   "stages and report of a session that was cut off, or whose report failed")
+                   "complete a session that was interrupted or whose report failed")
       ->type_name("DIR");
   command
       ->add_option("--reports", arguments.reports,
-                   "folder for the report (default: the session's own)")
+                   "folder for the report (default: the session's folder)")
       ->type_name("DIR");
-  command->add_flag("--csv", arguments.csv, "raw samples and estimates as CSV too");
-  command->add_flag("--mat", arguments.mat, "raw samples and estimates for MATLAB too");
-  command->add_flag("--split", arguments.split, "a raw log for every stage too");
-  command->add_flag("!--no-report", arguments.report, "no report at the end");
-  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  command->add_flag("--csv", arguments.csv, "also write raw samples and estimates as CSV");
+  command->add_flag("--mat", arguments.mat, "also write raw samples and estimates for MATLAB");
+  command->add_flag("--split", arguments.split, "also write a raw log per stage");
+  command->add_flag("!--no-report", arguments.report, "write no report");
+  command->add_flag("--quiet", arguments.quiet, "print only errors and warnings");
   commands.set_action(command, [&arguments, before] {
     if (before->count() == 0 && arguments.request.trigger_mps2 > 0)
       arguments.request.pre_trigger_s = 5;
@@ -109,11 +273,12 @@ void add_record(CommandList& commands) {
 void add_report(CommandList& commands) {
   ReportArguments& arguments = commands.arguments<ReportArguments>();
   CLI::App* command = commands.add(
-      "report", "one self-contained page of a session: boxplots, parameters, histories, loops");
+      "report",
+      "write a self-contained page about a session: boxplots, parameters, histories, loops");
   command->footer(
-      "With --config and --raw also stages (forced and free vibration side by side),\n"
-      "reference-dynamic values, transfer functions, drifts and forces.\n"
-      "Example: framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html");
+      "With --config and --raw, it also shows stages (forced and free vibration side by "
+      "side),\nreference-dynamic values, transfer functions, drifts and forces.\nExample: "
+      "framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html");
   commands.reads_files(
       command->add_option("EST", arguments.estimates, "LCM event log of estimates")->required());
   command->add_option("--out", arguments.out, "page to write (default: EST with .html)")
@@ -129,21 +294,21 @@ void add_report(CommandList& commands) {
   add_record_options(command, arguments.record);
   command
       ->add_option("--floors", arguments.floors,
-                   "JSON file for the peaks of every floor and the errors of measured floors left\n"
-                   "out in turn (channels on some floors only)")
+                   "JSON file for the peaks of every floor, and the errors when measured "
+                   "floors\nare left out in turn (channels on some floors only)")
       ->type_name("FILE");
   command
       ->add_option("--drifts", arguments.drifts,
-                   "JSON file for the peak drift of every story with its error, what it may have\n"
-                   "done by [fragility], and the placard")
+                   "JSON file for the peak drift of every story with its error, its "
+                   "probable\ndamage by [fragility], and the placard")
       ->type_name("FILE");
-  command->add_option("--title", arguments.title, "of the page");
+  command->add_option("--title", arguments.title, "title of the page");
   command->add_option("--test", arguments.test, "name of the test");
-  command->add_option("--operator", arguments.operator_name, "who made it");
-  command->add_option("--notes", arguments.notes, "what the next reader should know");
+  command->add_option("--operator", arguments.operator_name, "operator of the test");
+  command->add_option("--notes", arguments.notes, "notes for the report");
   command
       ->add_option("--session", arguments.session,
-                   "session.json of framewatch record: check of the channels, trigger")
+                   "session.json of `framewatch record`, with the channel check and the trigger")
       ->type_name("FILE");
   command->add_flag("--quiet", arguments.quiet, "do not print the page's path");
   add_max_size(command);
@@ -152,18 +317,16 @@ void add_report(CommandList& commands) {
 
 void add_convert(CommandList& commands) {
   ConvertArguments& arguments = commands.arguments<ConvertArguments>();
-  CLI::App* command = commands.add(
-      "convert", "records to LCM event logs or CSV, logs of accelerations or estimates to CSV");
+  CLI::App* command =
+      commands.add("convert", "convert records to LCM event logs or CSV, and logs to CSV");
   command->footer(
-      "What is read is told from the content, what is written from OUT's ending: .lcmlog, .csv or\n"
-      ".csv.gz. Several records of one rate become one log. docs/formats.md has every format.\n"
-      "Examples:\n"
-      "  framewatch convert rec.csv --config table.toml rec.lcmlog\n"
-      "  framewatch convert sheet.csv --unit g --time-unit ms rec.lcmlog\n"
-      "  framewatch convert elcentro_NS.dat --unit g elcentro.csv\n"
-      "  framewatch convert hachi.txt --unit gal --step 0.01 hachi.lcmlog\n"
-      "  framewatch convert ground.csv.gz first.csv.gz second.csv.gz top.csv.gz run.lcmlog\n"
-      "  framewatch convert est.lcmlog --boxplot est.csv");
+      "The content decides how a file is read. OUT's ending decides what is written: .lcmlog, "
+      ".csv\nor .csv.gz. Several records of one rate become one log. docs/formats.md lists the "
+      "formats.\nExamples:\n  framewatch convert rec.csv --config table.toml rec.lcmlog\n  "
+      "framewatch convert sheet.csv --unit g --time-unit ms rec.lcmlog\n  framewatch convert "
+      "elcentro_NS.dat --unit g elcentro.csv\n  framewatch convert hachi.txt --unit gal --step "
+      "0.01 hachi.lcmlog\n  framewatch convert ground.csv.gz first.csv.gz second.csv.gz top.csv.gz "
+      "run.lcmlog\n  framewatch convert est.lcmlog --boxplot est.csv");
   command
       ->add_option("FILES", arguments.inputs,
                    "IN... OUT: record files or one event log, then the output; - is a standard\n"
@@ -173,15 +336,16 @@ void add_convert(CommandList& commands) {
       ->type_name("");
   add_record_options(command, arguments.record);
   command
-      ->add_option("--config", arguments.config,
-                   "configuration whose channels say where the columns of their names travel")
+      ->add_option(
+          "--config", arguments.config,
+          "configuration whose channels give the LCM channel and node of equally named columns")
       ->type_name("FILE");
   command->add_option("--channel", arguments.channel,
                       "LCM channel to write (default ACCEL) or to read");
-  command->add_flag("--boxplot", arguments.boxplot, "boxplot columns beside the estimates");
+  command->add_flag("--boxplot", arguments.boxplot, "also write boxplot columns");
   command->add_flag("--denoise", arguments.denoise,
-                    "the paper's removal of noise on every channel of a record, for comparison");
-  command->add_option("--start-us", arguments.start_us, "sensor time of a record's time zero");
+                    "apply the paper's noise removal to every channel of a record, for comparison");
+  command->add_option("--start-us", arguments.start_us, "sensor time of the record's time zero");
   add_max_size(command);
   commands.set_action(
       command, [&arguments] { return convert(arguments); },
@@ -195,27 +359,26 @@ void add_convert(CommandList& commands) {
 void add_history(CommandList& commands) {
   HistoryArguments& arguments = commands.arguments<HistoryArguments>();
   CLI::App* command = commands.add(
-      "history", "what `run` keeps on disk: an overview, summaries, events, raw samples as files");
+      "history", "read what `run` keeps on disk: an overview, summaries, events, raw samples");
   command->footer(
-      "Times are UTC (2026-11-21T23:15:00Z) or seconds since 1970. Exit status: 0 done, 2 bad\n"
-      "usage or input, and nothing written.\n"
-      "Examples:\n"
-      "  framewatch history building.toml\n"
-      "  framewatch history building.toml --last 2d --parameter 'kx_1_*'\n"
-      "  framewatch history building.toml --period 3600 --out year.csv.gz\n"
-      "  framewatch history building.toml --from 2026-11-21T17:00Z --to 2026-11-21T17:05Z \\\n"
-      "    --raw quake.mseed");
+      "Times are UTC (2026-11-21T23:15:00Z) or seconds since 1970.\nExit status: 0 done, 2 bad "
+      "usage or input; nothing is written.\nExamples:\n  framewatch history building.toml\n  "
+      "framewatch history building.toml --last 2d --parameter 'kx_1_*'\n  framewatch history "
+      "building.toml --period 3600 --out year.csv.gz\n  framewatch history building.toml --from "
+      "2026-11-21T17:00Z --to 2026-11-21T17:05Z \\\n    --raw quake.mseed");
   command
       ->add_option("CONFIG_OR_DIR", arguments.place,
                    "configuration file (TOML) with [history], or the directory it names")
       ->required();
-  command->add_option("--from", arguments.from, "leave out what is earlier");
-  command->add_option("--to", arguments.to, "leave out what is this late or later");
-  command->add_option("--last", arguments.last, "only so long before the newest: 90m, 2h, 3d");
+  command->add_option("--from", arguments.from, "skip earlier data");
+  command->add_option("--to", arguments.to, "skip data from this time on");
+  command->add_option("--last", arguments.last,
+                      "only this long before the newest data: 90m, 2h, 3d");
   command->add_option("--period", arguments.period_s,
-                      "seconds that a summary is of (default: the shortest that fits a screen,\n"
-                      "of a file the shortest)");
-  command->add_option("--parameter", arguments.parameters, "names, * and ? allowed (default: all)");
+                      "seconds per summary (default: the shortest that fits the screen; for "
+                      "a\nfile, the shortest)");
+  command->add_option("--parameter", arguments.parameters,
+                      "names of parameters, with * and ? (default: all)");
   command
       ->add_option("--out", arguments.out,
                    "file for the summaries: .csv, .csv.gz or .mat (MATLAB 5)")
@@ -224,11 +387,12 @@ void add_history(CommandList& commands) {
       ->add_option("--raw", arguments.raw,
                    "file for raw samples: .lcmlog, .csv, .csv.gz or .mseed (miniSEED)")
       ->type_name("FILE");
-  command->add_option("--channel", arguments.channels, "of the raw samples (default: all)");
+  command->add_option("--channel", arguments.channels,
+                      "channels of the raw samples (default: all)");
   command->add_option("--network", arguments.network, "SEED network code")->capture_default_str();
   command->add_option("--station", arguments.station, "SEED station code")->capture_default_str();
-  command->add_flag("--events", arguments.events, "every event instead of summaries");
-  command->add_flag("--json", arguments.json, "the overview as a program would read it");
+  command->add_flag("--events", arguments.events, "list every event instead of summaries");
+  command->add_flag("--json", arguments.json, "print the overview as JSON");
   add_max_size(command);
   commands.set_action(command, [&arguments] { return history(arguments); });
 }

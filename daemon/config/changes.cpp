@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/config/keys/fields.h"
+#include "daemon/config/keys/option_table.h"
 #include "daemon/config/keys/section_table.h"
 
 namespace framewatch::daemon {
@@ -45,7 +45,7 @@ bool is_list_of_tables(const TomlValue& value) {
 
 void collect(const std::string& key, const TomlValue& value, Leaves& out) {
   if (value.kind == TomlKind::table) {
-    // An empty table may switch something on.
+    // An empty table can enable a feature.
     if (!key.empty() && value.entries.empty()) out[key] = {"{}", value.place};
     for (const TomlEntry& entry : value.entries)
       collect(key.empty() ? entry.key : key + "." + entry.key, entry.value, out);
@@ -57,7 +57,7 @@ void collect(const std::string& key, const TomlValue& value, Leaves& out) {
   }
 }
 
-/// "channel[3].scale" is "channel.scale".
+/// Returns "channel.scale" for "channel[3].scale".
 std::string without_numbers(const std::string& key) {
   std::string out;
   bool inside = false;
@@ -69,7 +69,7 @@ std::string without_numbers(const std::string& key) {
   return out;
 }
 
-/// Of a value, or of a section that is there without any key.
+/// Returns the reach of a key, or of a section without keys.
 Reach reach_of(const std::string& key) {
   const std::string name = without_numbers(key);
   const std::size_t dot = name.rfind('.');
@@ -80,7 +80,7 @@ Reach reach_of(const std::string& key) {
   return section == nullptr ? Reach::restart : section->reload.value_or(Reach::restart);
 }
 
-/// A section that may be missing, as a whole where that is allowed.
+/// Copies an optional section. Adds or removes it as a whole if that is allowed.
 template <class Settings>
 void take_section(std::string_view section, const std::optional<Settings>& from,
                   std::optional<Settings>& to) {

@@ -12,24 +12,24 @@ namespace framewatch::daemon {
 
 struct ConfigChange {
   std::string key;            ///< "estimator.min_snr", "channel[3].noise_mps2_per_rthz"
-  std::string before, after;  ///< as TOML; empty: the key is not there
-  TextPlace place;            ///< in the new file; line 0 when it is not there
+  std::string before, after;  ///< as TOML; empty if the key is absent
+  TextPlace place;            ///< place in the new file; line 0 if absent
   Reach reach = Reach::restart;
 
-  /// "estimator.min_snr: 10 -> 12".
+  /// Returns "estimator.min_snr: 10 -> 12".
   std::string described() const;
 };
 
-/// Every value that differs between two configuration files, in the order of their keys. Layout,
-/// comments and order of keys do not count.
+/// Returns every value that differs between two configuration files, ordered by key. Ignores
+/// layout, comments and the order of keys.
 std::vector<ConfigChange> changes_between(const TomlValue& before, const TomlValue& after);
 
-/// SHA-256 of the values of each section of a file, by its name: "estimator", "channel". Layout,
-/// comments and order of keys do not count.
+/// Returns the SHA-256 of the values of each section of a file, by its name: "estimator",
+/// "channel". Ignores layout, comments and the order of keys.
 std::map<std::string, std::string> section_digests(const TomlValue& document);
 
-/// A new configuration: the running one with everything of the fresh one that may change while an
-/// estimation runs. `fresh` differs from `running` in nothing that takes a restart.
+/// Returns the running configuration with those settings of `fresh` that may change while an
+/// estimation runs. `fresh` must not differ from `running` in a key that needs a restart.
 Config reloaded(const Config& running, const Config& fresh);
 
 }  // namespace framewatch::daemon

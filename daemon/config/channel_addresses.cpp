@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "daemon/config/axis_names.h"
-
 namespace framewatch::daemon {
 
 std::vector<drivers::AxisAddress> addresses(const std::vector<AxisSource>& sources) {

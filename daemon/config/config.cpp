@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/config/baseline_file.h"
-#include "daemon/config/gap_model.h"
-#include "daemon/config/keys/fields.h"
+#include "daemon/config/changes.h"
+#include "daemon/config/keys/option_table.h"
+#include "daemon/config/learned_files.h"
 #include "daemon/config/plausibility/doubted_building.h"
 #include "daemon/config/read_config.h"
 #include "drivers/files/standard_streams.h"

@@ -11,7 +11,7 @@ namespace framewatch::daemon {
 
 /// Reads and validates. Empty optional and every problem at once when it is not valid.
 std::optional<Config> load_config(const std::string& path, std::vector<ConfigProblem>& problems);
-/// The same from a text; `path` is what messages call it.
+/// Parses a configuration from a text. `path` is its name in messages.
 std::optional<Config> parse_config(const std::string& path, const std::string& text,
                                    std::vector<ConfigProblem>& problems);
 

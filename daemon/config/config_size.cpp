@@ -12,7 +12,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kUsualWindowRows = 2000;  // with more the window is what is long
+constexpr double kUsualWindowRows = 2000;  // with more rows the window is the cause
 constexpr double kMega = 1024.0 * 1024;
 
 struct Share {
@@ -27,7 +27,7 @@ TextPlace place_of(const TomlValue& document, const Share& share) {
   return key != nullptr ? key->value.place : section->place;
 }
 
-/// Samples around a gap that wait to be stored.
+/// Returns the samples around a gap that wait to be stored.
 double segment_bytes(const Config& config) {
   if (!config.gap || config.gap->store.empty()) return 0;
   const GapSettings& gap = *config.gap;

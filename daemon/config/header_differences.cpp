@@ -17,11 +17,11 @@ using drivers::LevelKind;
 using estimator::Direction;
 using estimator::SensorAxis;
 
-/// Headers round azimuths to whole degrees, and nobody places a sensor better.
+/// Headers round azimuths to whole degrees; sensors are not placed more precisely.
 constexpr double kSameAzimuth_deg = 5;
 constexpr double kDegrees = 180 / M_PI;
 
-/// A channel that both have.
+/// A channel of both the record and the configuration.
 struct Both {
   const SensorAxis* axis = nullptr;
   const AxisHeader* header = nullptr;
@@ -35,7 +35,7 @@ std::vector<Both> in_both(const Config& config, const drivers::Record& record) {
   return out;
 }
 
-/// Where the sensor's own positive axis points by the configuration, clockwise from the plan's y.
+/// Returns the configured direction of the sensor's positive axis, clockwise from the plan's y.
 double from_y_deg(const SensorAxis& axis) {
   double counterclockwise = axis.direction == Direction::y ? M_PI / 2 : 0;  // from x
   if (axis.plan) counterclockwise = axis.plan->angle_rad;
@@ -61,7 +61,7 @@ std::optional<Value> most_common(const std::vector<Value>& values, const Same& s
   return best;
 }
 
-/// Azimuth of the plan's y.
+/// Returns the azimuth of the plan's y.
 std::optional<double> azimuth_of_y(const Config& config, const std::vector<Both>& channels) {
   if (config.azimuth_y_deg) return config.azimuth_y_deg;
   std::vector<double> candidates;
@@ -97,7 +97,7 @@ std::string about_direction(const Both& both, double azimuth_y_deg) {
       azimuths, 100 * std::cos(off_deg / kDegrees), std::abs(100 * std::sin(off_deg / kDegrees)));
 }
 
-/// How many the network's number of a floor is above the story that the configuration has.
+/// Returns the network's floor number minus the configured story.
 std::optional<int> counted_above(const Both& both) {
   const drivers::Level level = level_of(*both.header);
   if (level.kind != LevelKind::floor) return std::nullopt;

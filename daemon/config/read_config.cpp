@@ -8,7 +8,6 @@
 #include "daemon/config/config_size.h"
 #include "daemon/config/keys/section_table.h"
 #include "daemon/config/keys/suggest.h"
-#include "daemon/config/sections/can_reader.h"
 #include "daemon/config/sections/effects.h"
 #include "daemon/config/sections/sections.h"
 
@@ -19,7 +18,7 @@ void check_sections(const TomlValue& document, std::vector<TextProblem>& problem
   std::vector<std::string> known;
   std::string headings;
   for (const SectionDescription& s : section_table()) {
-    if (!s.reload) continue;  // of another file
+    if (!s.reload) continue;  // a section of other files
     if (s.section.find('.') == std::string_view::npos) known.emplace_back(s.section);
     if (s.heading.starts_with('['))
       headings += (headings.empty() ? "" : ", ") + std::string(s.heading);

@@ -7,11 +7,12 @@
 
 namespace framewatch::daemon {
 
-/// Whether the document describes a virtual test (`framewatch simulate`), not a building alone.
+/// Returns true if the document describes a virtual test (`framewatch simulate`).
 bool is_scenario(const TomlValue& document);
 
-/// The configuration in a document that was parsed already; its path is set, its digest and the
-/// files it names beside DBC files are not touched. False when there was a problem.
+/// Reads a configuration from a parsed document. `config` must have its path. Does not set the
+/// digest and reads only DBC files of the files it names. Returns false and appends the problems if
+/// there are any.
 bool read_config(const TomlValue& document, Config& config, std::vector<TextProblem>& problems);
 
 }  // namespace framewatch::daemon

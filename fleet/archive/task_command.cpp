@@ -19,7 +19,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/base/sqlite_file.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"

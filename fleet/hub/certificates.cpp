@@ -15,8 +15,8 @@
 #include <arpa/inet.h>
 #include <fmt/core.h>
 
-#include "daemon/base/child_process.h"
 #include "daemon/base/file_digest.h"
+#include "daemon/base/process.h"
 #include "drivers/files/input_file.h"
 
 namespace framewatch::fleet {

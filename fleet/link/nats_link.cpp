@@ -18,7 +18,7 @@
 #include <fmt/core.h>
 #include <nats/nats.h>
 
-#include "daemon/base/child_process.h"
+#include "daemon/base/process.h"
 #include "daemon/base/clocks.h"
 #include "drivers/files/descriptor.h"
 #include "fleet/message/message.h"

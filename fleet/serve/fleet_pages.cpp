@@ -12,7 +12,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/random_id.h"
+#include "daemon/base/process.h"
 #include "drivers/files/number_text.h"
 #include "fleet/message/address.h"
 #include "fleet/serve/commander.h"

@@ -15,7 +15,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
 #include "daemon/base/log.h"
-#include "daemon/base/stop_signal.h"
+#include "daemon/base/signals.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/web/web_socket.h"
 #include "drivers/files/caught.h"

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/utf8.h"
+#include "daemon/base/printable.h"
 #include "drivers/files/number_text.h"
 #include "fleet/store/fleet_schema.h"
 

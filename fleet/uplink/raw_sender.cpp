@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/child_process.h"
+#include "daemon/base/process.h"
 #include "fleet/message/address.h"
 
 namespace framewatch::fleet {

@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/damaged_database.h"
 #include "daemon/base/log.h"
+#include "daemon/base/sqlite_file.h"
 #include "daemon/monitor/history/history_schema.h"
 
 namespace framewatch::fleet {

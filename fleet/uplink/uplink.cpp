@@ -7,7 +7,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/number_text.h"
 #include "fleet/message/address.h"

@@ -1,6 +1,5 @@
 // TOML files: configuration, scenario, expectation, baseline.
-#include "daemon/config/baseline_file.h"
-#include "daemon/config/gap_model.h"
+#include "daemon/config/learned_files.h"
 #include "daemon/tools/replay/expectation.h"
 #include "daemon/tools/simulation/scenario.h"
 #include "estimator/structure/parameter_table.h"

@@ -20,7 +20,7 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/history/history.h"
 #include "daemon/monitor/history/history_files.h"

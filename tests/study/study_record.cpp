@@ -9,7 +9,6 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/tools/simulation/effect_json.h"
 #include "daemon/tools/simulation/simulation_truth.h"
 #include "drivers/files/text_output.h"
 #include "drivers/records/record_csv_writer.h"

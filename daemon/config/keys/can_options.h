@@ -6,7 +6,7 @@
 
 namespace framewatch::daemon {
 
-/// What a [[can_node]] says about the messages of its sender; the rest is drivers::CanNodeMap.
+/// Keys of [[can_node]] about its sender's messages. The other keys are in drivers::CanNodeMap.
 struct CanNodeSettings {
   std::vector<std::string> messages;
   std::uint32_t id_offset = 0;  ///< added to the ids of the DBC

@@ -13,7 +13,7 @@ namespace {
 
 using enum OptionType;
 
-/// Texts that the options point into.
+/// Owns the texts that the options point to.
 class EffectOptions {
  public:
   EffectOptions() {
@@ -59,7 +59,7 @@ class EffectOptions {
     all_.push_back(o);
   }
 
-  /// Ranges differ between effects and are checked there.
+  /// Adds a parameter. Its range differs between effects and is checked there.
   void add_parameter(const estimator::EffectParameter& p) {
     const auto known =
         std::find_if(all_.begin(), all_.end(), [&](const Option& o) { return o.key == p.key; });

@@ -8,7 +8,98 @@ namespace {
 using enum OptionType;
 using enum Reach;
 
-const Option kOptions[] = {
+const Option kActions[] = {
+    {.section = "actions",
+     .key = "severity",
+     .type = choice,
+     .choices = "information|warning|alarm",
+     .meaning = "Least severity of notified events. Their end is notified too.",
+     .reload = settings,
+     .target = into<&ActionSettings::severity>},
+    {.section = "actions",
+     .key = "kinds",
+     .type = texts,
+     .meaning = "Kinds of events, such as \"stiffness_change\", \"gap\", \"bus_off\". Empty: all.",
+     .reload = settings,
+     .target = into<&ActionSettings::kinds>},
+    {.section = "actions",
+     .key = "changed_every_s",
+     .unit = "s",
+     .min = 0,
+     .max = 86400,
+     .meaning = "Least time between notifications of one event's changes; the newest change is "
+                "always sent.",
+     .reload = settings,
+     .target = into<&ActionSettings::changed_every_s>},
+    {.section = "actions",
+     .key = "per_minute",
+     .type = integer,
+     .unit = "1/min",
+     .min = 1,
+     .max = 6000,
+     .meaning = "Most events per minute, each for the command and the webhook. Others wait, the "
+                "most severe first.",
+     .reload = settings,
+     .target = into<&ActionSettings::per_minute>},
+    {.section = "actions",
+     .key = "command",
+     .type = texts,
+     .meaning = "Program and arguments, run once per event without a shell. The event is JSON on "
+                "standard input and FRAMEWATCH_* in the environment.",
+     .reload = settings,
+     .target = into<&ActionSettings::command>},
+    {.section = "actions",
+     .key = "command_timeout_s",
+     .unit = "s",
+     .min = 0.1,
+     .max = 3600,
+     .meaning = "The command's process group is ended after this time.",
+     .reload = settings,
+     .target = into<&ActionSettings::command_timeout_s>},
+    {.section = "actions",
+     .key = "webhook",
+     .type = text,
+     .meaning = "http:// or https:// address for a POST with JSON per event.",
+     .reload = settings,
+     .target = into<&ActionSettings::webhook>},
+    {.section = "actions",
+     .key = "webhook_header_file",
+     .type = text,
+     .meaning = "File of further request headers, one per line, relative to this file: "
+                "\"Authorization: Bearer ...\". Read for each request.",
+     .reload = settings,
+     .is_path = true,
+     .target = into<&ActionSettings::webhook_header_file>},
+    {.section = "actions",
+     .key = "webhook_ca_file",
+     .type = text,
+     .meaning = "CA certificates (PEM) for the server, instead of the system's.",
+     .reload = settings,
+     .is_path = true,
+     .target = into<&ActionSettings::webhook_ca_file>},
+    {.section = "actions",
+     .key = "webhook_timeout_s",
+     .unit = "s",
+     .min = 0.1,
+     .max = 300,
+     .meaning = "Timeout of one request, including the connection.",
+     .reload = settings,
+     .target = into<&ActionSettings::webhook_timeout_s>},
+    {.section = "actions",
+     .key = "webhook_patience_s",
+     .unit = "s",
+     .min = 0,
+     .max = 604800,
+     .meaning = "How long to retry, after 1 s, 2 s, 4 s and so on up to 60 s. Then the event is "
+                "lost and counted.",
+     .reload = settings,
+     .target = into<&ActionSettings::webhook_patience_s>},
+};
+
+using enum OptionType;
+using enum Reach;
+
+const Option kEventReport[] = {
     {.section = "event_report",
      .key = "directory",
      .type = text,
@@ -20,7 +111,6 @@ const Option kOptions[] = {
     {.section = "event_report",
      .key = "trigger_mps2",
      .unit = "m/s^2",
-     .default_value = "0.1",
      .min = 1e-4,
      .max = 50,
      .meaning = "Strong motion begins when the base is this far from its mean.",
@@ -29,7 +119,6 @@ const Option kOptions[] = {
     {.section = "event_report",
      .key = "quiet_s",
      .unit = "s",
-     .default_value = "20",
      .min = 2,
      .max = 45,
      .meaning = "Strong motion ends after this time below the trigger.",
@@ -37,7 +126,6 @@ const Option kOptions[] = {
      .target = into<&EventReportSettings::options, &estimator::ShakingOptions::quiet_s>},
     {.section = "event_report",
      .key = "yellow_drift_ratio",
-     .default_value = "0.005",
      .min = 0,
      .max = 1,
      .meaning = "Peak drift over story height that makes the report yellow.",
@@ -45,7 +133,6 @@ const Option kOptions[] = {
      .target = into<&EventReportSettings::yellow_drift_ratio>},
     {.section = "event_report",
      .key = "red_drift_ratio",
-     .default_value = "0.015",
      .min = 0,
      .max = 1,
      .meaning = "Peak drift over story height that makes the report red.",
@@ -53,7 +140,6 @@ const Option kOptions[] = {
      .target = into<&EventReportSettings::red_drift_ratio>},
     {.section = "event_report",
      .key = "yellow_loss_ratio",
-     .default_value = "0.05",
      .min = 0,
      .max = 1,
      .meaning =
@@ -62,7 +148,6 @@ const Option kOptions[] = {
      .target = into<&EventReportSettings::yellow_loss_ratio>},
     {.section = "event_report",
      .key = "red_loss_ratio",
-     .default_value = "0.2",
      .min = 0,
      .max = 1,
      .meaning = "Lasting stiffness loss that makes the report red.",
@@ -71,7 +156,6 @@ const Option kOptions[] = {
     {.section = "event_report",
      .key = "most_reports",
      .type = integer,
-     .default_value = "500",
      .min = 1,
      .max = 100000,
      .meaning = "Number of reports to keep; the oldest are removed.",
@@ -81,7 +165,7 @@ const Option kOptions[] = {
 
 constexpr std::string_view kByHand = "one for all stories or one for each; type may give it";
 
-constexpr Option median(std::string_view key, std::string_view meaning) {
+Option median(std::string_view key, std::string_view meaning) {
   return {.section = "fragility",
           .key = key,
           .type = grid,
@@ -94,7 +178,7 @@ constexpr Option median(std::string_view key, std::string_view meaning) {
           .by_hand = kByHand};
 }
 
-constexpr Option dispersion(std::string_view key, std::string_view meaning) {
+Option dispersion(std::string_view key, std::string_view meaning) {
   return {.section = "fragility",
           .key = key,
           .type = grid,
@@ -122,6 +206,7 @@ const Option kFragility[] = {
     {.section = "fragility",
      .key = "design_level",
      .type = choice,
+     .no_default = true,
      .choices = "high|moderate|low|pre",
      .meaning = "Seismic code of the design; required with type. pre: before codes. S5, C3 and URM "
                 "have only low and pre.",
@@ -130,7 +215,6 @@ const Option kFragility[] = {
     {.section = "fragility",
      .key = "drift_limits",
      .type = choice,
-     .default_value = "\"story\"",
      .choices = "story|height",
      .meaning = "story: types without L, M, H use low-rise limits, which apply to a single story. "
                 "height: limits follow the number of stories and judge damage earlier.",
@@ -158,7 +242,6 @@ const Option kFragility[] = {
         "Standard deviation of that drift's logarithm, without the uncertainty of the shaking."),
     {.section = "fragility",
      .key = "restricted_probability",
-     .default_value = "0.25",
      .min = 0.01,
      .max = 0.99,
      .meaning =
@@ -167,7 +250,6 @@ const Option kFragility[] = {
      .target = into<&FragilitySettings::rules, &estimator::PlacardRules::restricted>},
     {.section = "fragility",
      .key = "unsafe_probability",
-     .default_value = "0.25",
      .min = 0.01,
      .max = 0.99,
      .meaning = "Probability of at least extensive damage in a story for the placard unsafe.",
@@ -177,8 +259,12 @@ const Option kFragility[] = {
 
 }  // namespace
 
+std::span<const Option> action_options() {
+  return kActions;
+}
+
 std::span<const Option> event_report_options() {
-  return kOptions;
+  return kEventReport;
 }
 
 std::span<const Option> fragility_options() {

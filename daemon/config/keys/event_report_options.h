@@ -8,11 +8,30 @@
 
 namespace framewatch::daemon {
 
-/// [event_report]: what is written after strong motion, docs/operate.md.
+/// [actions]: notifications of `framewatch run` when an event is raised, changes or is cleared,
+/// docs/actions.md.
+struct ActionSettings {
+  int severity = 1;                ///< lowest event_t::severity of delivered events
+  std::vector<std::string> kinds;  ///< kinds of delivered events; empty for all
+  double changed_every_s = 60;     ///< shortest time between two deliveries of an event's changes
+  int per_minute = 12;             ///< most deliveries by the command, and by the webhook
+
+  std::vector<std::string> command;  ///< program and arguments; empty for no command
+  double command_timeout_s = 30;
+
+  std::string webhook;               ///< URL; empty for no webhook
+  std::string webhook_header_file;   ///< file with further headers, one per line
+  std::string webhook_ca_file;       ///< trusted certificates; empty for the system's
+  double webhook_timeout_s = 10;     ///< timeout of one attempt
+  double webhook_patience_s = 3600;  ///< a failed delivery is repeated for this long
+};
+
+/// [event_report]: reports after strong motion, docs/operate.md.
 struct EventReportSettings {
   std::string directory;
   estimator::ShakingOptions options;
-  /// Of the story height, and of the stiffness before: from here on yellow, or red.
+  /// Limits from which the report is yellow or red: drift relative to the story height, loss
+  /// relative to the earlier stiffness.
   double yellow_drift_ratio = 0.005, red_drift_ratio = 0.015;
   double yellow_loss_ratio = 0.05, red_loss_ratio = 0.2;
   int most_reports = 500;  ///< older ones are removed
@@ -20,17 +39,17 @@ struct EventReportSettings {
 
 enum class DesignLevel { high, moderate, low, pre };
 
-/// story: limits of a single story's drift. height: HAZUS' lower limits for the average drift of
-/// mid-rise and high-rise buildings, by the number of stories.
+/// story uses limits of a single story's drift. height uses HAZUS' lower limits of the average
+/// drift of mid-rise and high-rise buildings, by the number of stories.
 enum class DriftLimits { story, height };
 
-/// [fragility]: what a peak drift may have done to a story, docs/operate.md.
+/// [fragility]: probable damage of a story by its peak drift, docs/operate.md.
 struct FragilitySettings {
   std::string type;  ///< HAZUS' building type, "C1" or "C1M"; empty: every median is given
   DesignLevel design_level = DesignLevel::moderate;
   DriftLimits drift_limits = DriftLimits::story;
   estimator::PlacardRules rules;
-  /// What follows from all keys: of every story, and where it is from, in words.
+  /// Follows from all keys: the fragility of every story, and its source in words.
   std::vector<estimator::Fragility> by_story = {};
   std::string source = {};
 };

@@ -5,15 +5,14 @@
 
 namespace framewatch::daemon {
 
-/// [fleet]: the hub that `framewatch uplink` sends to, docs/fleet.md. `framewatch run` does not
-/// look at it.
+/// [fleet]: the hub of `framewatch uplink`, docs/fleet.md. `framewatch run` ignores it.
 struct FleetSettings {
   std::string building;             ///< its name at the hub
   std::vector<std::string> hubs;    ///< tls://HOST:PORT
-  std::string certificate, key;     ///< of this building, PEM
-  std::string ca;                   ///< certificates that hubs are known by, PEM
-  std::vector<std::string> accept;  ///< commands of the hub that are obeyed
-  double raw_kbit_s = 2000;         ///< at most, of raw samples that were asked for
+  std::string certificate, key;     ///< certificate and key of this building, PEM
+  std::string ca;                   ///< certificates that verify hubs, PEM
+  std::vector<std::string> accept;  ///< commands of the hub to accept
+  double raw_kbit_s = 2000;         ///< largest rate of requested raw samples
   bool send_config = false;
 };
 

@@ -8,25 +8,37 @@ namespace {
 using enum OptionType;
 using enum Reach;
 
-const Option kOptions[] = {
+const Option kCommands[] = {
+    {.section = "commands",
+     .key = "directory",
+     .type = text,
+     .meaning =
+         "Directory of the sockets `<prefix>run` and `<prefix>record`. Default: /run/framewatch "
+         "for the service; else $XDG_RUNTIME_DIR/framewatch, or /tmp/framewatch-UID.",
+     .reload = restart,
+     .is_path = true,
+     .target = into<&CommandSettings::directory>},
+};
+
+using enum OptionType;
+using enum Reach;
+
+const Option kLcm[] = {
     {.section = "lcm",
      .key = "url",
      .type = text,
-     .default_value = "\"udpm://239.255.76.67:7667?ttl=0\"",
      .meaning = "LCM provider. ttl=0 keeps messages on this machine.",
      .reload = restart,
      .target = into<&LcmSettings::url>},
     {.section = "lcm",
      .key = "prefix",
      .type = text,
-     .default_value = "\"FRAMEWATCH_\"",
      .meaning = "Prefix of published channels; must differ between daemons on one bus.",
      .reload = restart,
      .target = into<&LcmSettings::prefix>},
     {.section = "lcm",
      .key = "interface",
      .type = texts,
-     .default_value = "[\"lo\"]",
      .meaning = "Network interfaces for received udpm messages, besides this machine's own. Others "
                 "are dropped and counted.",
      .reload = restart,
@@ -35,7 +47,6 @@ const Option kOptions[] = {
      .key = "queue_capacity",
      .type = integer,
      .unit = "messages",
-     .default_value = "10000",
      .min = 1,
      .max = 10000000,
      .meaning = "Queue length per channel; further messages are dropped and counted.",
@@ -45,7 +56,6 @@ const Option kOptions[] = {
      .key = "receive_buffer_bytes",
      .type = integer,
      .unit = "bytes",
-     .default_value = "4194304",
      .min = 4096,
      .max = 1073741824,
      .meaning = "Receive buffer of the socket.",
@@ -54,7 +64,6 @@ const Option kOptions[] = {
     {.section = "lcm",
      .key = "commands",
      .type = boolean,
-     .default_value = "false",
      .meaning = "Accept commands over LCM too, from anyone who can send there.",
      .reload = restart,
      .target = into<&LcmSettings::commands>},
@@ -62,7 +71,6 @@ const Option kOptions[] = {
      .key = "boxplot_every",
      .type = integer,
      .unit = "windows",
-     .default_value = "1",
      .min = 1,
      .max = 1000000,
      .meaning = "Send boxplot statistics with every n-th window.",
@@ -71,7 +79,6 @@ const Option kOptions[] = {
     {.section = "lcm",
      .key = "two_senders",
      .type = choice,
-     .default_value = "\"first\"",
      .choices = "first|none",
      .meaning = "Whose samples to use while two senders share a node number. If the senders are "
                 "indistinguishable, both are ignored.",
@@ -81,8 +88,12 @@ const Option kOptions[] = {
 
 }  // namespace
 
+std::span<const Option> command_options() {
+  return kCommands;
+}
+
 std::span<const Option> lcm_options() {
-  return kOptions;
+  return kLcm;
 }
 
 }  // namespace framewatch::daemon

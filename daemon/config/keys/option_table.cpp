@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string>
 
 #include <fmt/core.h>
 
@@ -12,7 +14,66 @@ using enum OptionType;
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+/// Returns the shortest text of a number: "0.3", "60", "1e-6".
+std::string number_text(double value) {
+  std::string out = fmt::format("{}", value);
+  const std::size_t padded = out.find("e-0");
+  if (padded != std::string::npos) out.erase(padded + 2, 1);
+  return out;
+}
+
+template <class Items, class Text>
+std::string list_text(const Items& items, Text text_of) {
+  std::string out;
+  for (const auto& item : items) out += (out.empty() ? "" : ", ") + text_of(item);
+  return "[" + out + "]";
+}
+
+std::string in_quotes(const std::string& words) {
+  return "\"" + words + "\"";
+}
+
+/// Returns the initial value of the target's field in TOML, in the key's unit. Empty for an empty
+/// text, which stands for a key that is not set.
+std::string default_in_field(const Option& option) {
+  const KeyValue value = option.target.initial(option.type);
+  const auto converted = option.target.converted;
+  switch (option.type) {
+    case text:
+      return value.text.empty() ? "" : in_quotes(value.text);
+    case choice:
+      return in_quotes(choices(option).at(static_cast<std::size_t>(value.integer)));
+    case integer:
+    case number:
+      return number_text(converted ? value.number / converted(1) : value.number);
+    case boolean:
+      return value.boolean ? "true" : "false";
+    case texts:
+      return list_text(value.texts, in_quotes);
+    case grid:
+      return list_text(value.list, number_text);
+    case table:
+      return "";
+  }
+  return "";
+}
+
 }  // namespace
+
+void place_files(std::string_view section, const void* owner, std::string_view directory,
+                 void* settings) {
+  for (const Option& o : options()) {
+    if (o.section != section || o.target.owner != owner || !o.is_path) continue;
+    std::string& file = *o.target.text(settings);
+    if (!file.empty()) file = (std::filesystem::path(directory) / file).string();
+  }
+}
+
+void take_reloadable(std::string_view section, const void* owner, const void* from, void* to) {
+  for (const Option& o : options())
+    if (o.section == section && o.target.owner == owner && o.reload && *o.reload != Reach::restart)
+      o.target.copy(from, to);
+}
 
 std::span<const Option> options() {
   static const std::vector<Option> kAll = [] {
@@ -25,6 +86,9 @@ std::span<const Option> options() {
       const std::span<const Option> some = table();
       all.insert(all.end(), some.begin(), some.end());
     }
+    for (Option& o : all)
+      if (o.target && o.default_value.empty() && !o.required && !o.no_default)
+        o.default_value = default_in_field(o);
     return all;
   }();
   return kAll;

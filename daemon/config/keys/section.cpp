@@ -4,17 +4,89 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
-#include "daemon/config/keys/grid.h"
+#include "daemon/base/toml_document.h"
 #include "daemon/config/keys/suggest.h"
 
 namespace framewatch::daemon {
 namespace {
 
-/// "[1.0, 2.5]" as TOML writes it.
+struct GridReading {
+  std::vector<double> values;  ///< flattened, last index fastest
+  TextPlace place;             ///< place of the problem
+  std::string problem;         ///< empty when the values are good
+};
+
+int depth(const TomlValue& value) {
+  if (value.kind != TomlKind::array) return 0;
+  int deepest = 0;
+  for (const TomlValue& item : value.items) deepest = std::max(deepest, depth(item));
+  return 1 + deepest;
+}
+
+/// Returns the sizes that the file's nesting must have: drops sizes of 1, last first, while there
+/// are more dimensions than nesting levels.
+std::vector<int> sizes_for_depth(std::vector<int> sizes, int nesting) {
+  while (static_cast<int>(sizes.size()) > nesting) {
+    const auto one = std::find(sizes.rbegin(), sizes.rend(), 1);
+    if (one == sizes.rend()) break;
+    sizes.erase(std::next(one).base());
+  }
+  return sizes;
+}
+
+void read_level(const TomlValue& value, const std::vector<int>& sizes, std::size_t level,
+                GridReading& out) {
+  if (!out.problem.empty()) return;
+  const bool is_list = value.kind == TomlKind::array;
+  if (level == sizes.size()) {
+    if (is_list) {
+      out.place = value.place;
+      out.problem = "here a number is expected, found a list";
+    } else {
+      out.values.push_back(value.number);
+    }
+    return;
+  }
+  const auto wanted = static_cast<std::size_t>(sizes[level]);
+  if (!is_list || value.items.size() != wanted) {
+    out.place = value.place;
+    out.problem = fmt::format("here a list of {} is expected, found {}", wanted,
+                              is_list ? fmt::format("{}", value.items.size()) : "a number");
+    return;
+  }
+  for (const TomlValue& item : value.items) read_level(item, sizes, level + 1, out);
+}
+
+/// Reads nested lists of numbers of these sizes; a number alone stands for all. The nesting may
+/// leave out dimensions of size 1: [story][frame] is good for a plane building's [story][y][x].
+GridReading read_grid(const TomlValue& value, const std::vector<int>& sizes) {
+  GridReading out;
+  if (value.kind != TomlKind::array) {
+    std::size_t count = 1;
+    for (const int size : sizes) count *= static_cast<std::size_t>(size);
+    out.values.assign(count, value.number);
+    return out;
+  }
+  read_level(value, sizes_for_depth(sizes, depth(value)), 0, out);
+  if (!out.problem.empty()) out.values.clear();
+  return out;
+}
+
+/// Returns sizes as "2 x 3 x 3".
+std::string size_text(const std::vector<int>& sizes) {
+  std::string out;
+  for (const int size : sizes) out += fmt::format("{}{}", out.empty() ? "" : " x ", size);
+  return out;
+}
+
+/// Returns the numbers of a TOML list such as "[1.0, 2.5]".
 std::vector<double> numbers_in(const std::string& list) {
   std::vector<double> out;
   const char* at = list.c_str();
@@ -162,8 +234,7 @@ bool ConfigSection::given(std::string_view key) const {
 
 std::string ConfigSection::default_of(std::string_view key) const {
   const Option& o = option(key);
-  return std::string(paper_defaults_ && !o.paper_default.empty() ? o.paper_default
-                                                                 : o.default_value);
+  return paper_defaults_ && !o.paper_default.empty() ? o.paper_default : o.default_value;
 }
 
 double ConfigSection::number(std::string_view key) const {

@@ -10,34 +10,35 @@
 
 namespace framewatch::daemon {
 
-/// One table of the configuration file, checked against its section of the option table when it is
-/// made. Afterwards a key has its value, or its default when it is absent or has a problem.
-/// Asking for a key the option table does not have is a programmer's error.
+/// One table of the configuration file. The constructor checks it against its section of the option
+/// table. Then each key has its value, or its default if it is absent or has a problem. Asking for
+/// a key that is not in the option table is a programming error.
 class ConfigSection {
  public:
-  /// `table` null: the file does not have it, everything is at its default and required keys are
-  /// reported at `where`. Messages begin with `label`.
+  /// With a null `table` everything has its default, and missing required keys are reported at
+  /// `where`. Messages begin with `label`.
   ConfigSection(std::string_view section, std::string label, const TomlValue* table,
                 TextPlace where, std::vector<TextProblem>& problems);
 
-  /// Given, and without a problem so far.
+  /// Returns true if the key is given and has no problem so far.
   bool given(std::string_view key) const;
-  /// Without a problem so far; absent is good unless the key is required.
+  /// Returns true if the key has no problem so far. An absent key is good unless it is required.
   bool good(std::string_view key) const { return !bad_.contains(std::string(key)); }
   double number(std::string_view key) const;
   int integer(std::string_view key) const;
   bool boolean(std::string_view key) const;
   std::string text(std::string_view key) const;
   std::vector<std::string> texts(std::string_view key) const;
-  /// Values of a grid of these sizes, flattened, last index fastest; empty after a problem. A
-  /// dimension of size 1 may be left out of the file's nesting.
+  /// Returns the values of a grid of these sizes, flattened, last index fastest. Returns an empty
+  /// list after a problem. The file's nesting may leave out dimensions of size 1.
   std::vector<double> grid(std::string_view key, const std::vector<int>& sizes);
-  /// Numbers of a grid with one dimension of any length, or its default; empty after a problem.
+  /// Returns the numbers of a one-dimensional grid of any length, or its default. Returns an empty
+  /// list after a problem.
   std::vector<double> list(std::string_view key);
-  /// From here on a key that has another default in the paper's variant has that one.
+  /// Uses the defaults of the paper's variant from now on.
   void use_paper_defaults() { paper_defaults_ = true; }
-  /// Every key whose target is a field of `Settings` goes there; a choice that is absent and has no
-  /// default, and a list with a problem, leave the field as it is.
+  /// Stores every key whose target is a field of `Settings`. Leaves the field unchanged for an
+  /// absent choice without default and for a list with a problem.
   template <class Settings>
   void read_into(Settings& settings) {
     store(&kOwner<Settings>, &settings);
@@ -45,7 +46,7 @@ class ConfigSection {
   const TomlValue* value(std::string_view key) const;
   TextPlace where() const { return where_; }
 
-  /// Reports at the key's value, or at the table when the key is absent or empty.
+  /// Reports a problem at the key's value, or at the table if the key is absent or empty.
   void problem(std::string_view key, const std::string& message);
 
  private:

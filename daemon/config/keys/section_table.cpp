@@ -1,7 +1,99 @@
 #include "daemon/config/keys/section_table.h"
 
+#include <cmath>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "daemon/config/keys/option_table.h"
+
 namespace framewatch::daemon {
 namespace {
+
+constexpr const char* kIntroduction =
+    "# Configuration\n\n"
+    "Made by `framewatch check --print-options-markdown` from the option table; do not edit.\n\n"
+    "A configuration is one TOML file. `framewatch check FILE` lists every problem with line and "
+    "column. Units are part of the keys' names. Ranges include their ends, except after \"above\"."
+    "\n\n"
+    "`framewatch init` writes a first configuration. It asks for stories, bays, spans, heights and "
+    "masses, and takes the channels from a record's header, from LCM or from a DBC file. With 0x0 "
+    "bays, one frame stands for all frames of a direction: one accelerometer per floor and "
+    "direction is enough.\n\n"
+    "`check`, `run` and `replay` warn of unusual values: stories outside 0.02 to 20 m, spans "
+    "outside 0.05 to 100 m, floors outside 20 to 3000 kg/m^2 (1 to 8000 in models, whose stories "
+    "are below 2 m), a first natural frequency more than 10 times from 46 Hz m over the height "
+    "(models: outside 0.2 to 100 Hz), its damping ratio outside 0.001 to 0.3, and a story over 100 "
+    "times as stiff as another.\n";
+
+std::string type_of(const Option& o) {
+  switch (o.type) {
+    case OptionType::text:
+      return "text";
+    case OptionType::choice:
+      return constraint(o);
+    case OptionType::integer:
+      return "integer";
+    case OptionType::number:
+      return "number";
+    case OptionType::boolean:
+      return "boolean";
+    case OptionType::texts:
+      return "list of texts";
+    case OptionType::grid:
+      return fmt::format("number or {}", o.shape);
+    case OptionType::table:
+      return "table";
+  }
+  return "";
+}
+
+/// Returns "0 to 3600", "above 0" or "at least 1". Empty if all values are allowed.
+std::string range_of(const Option& o) {
+  if (!std::isfinite(o.min)) return "";
+  if (!std::isfinite(o.max))
+    return fmt::format("{} {:.10g}", o.above_min ? "above" : "at least", o.min);
+  return fmt::format("{}{:.10g} to {:.10g}", o.above_min ? "above " : "", o.min, o.max);
+}
+
+/// Returns "above 0 to 3600 s, default `5`". A range replaces the word "number". docs/effects.md
+/// has the units of effects.
+std::string value_of(const Option& o) {
+  const std::string range = range_of(o);
+  std::string out = range.empty() || o.type != OptionType::number ? type_of(o) : "";
+  if (o.type == OptionType::grid && !range.empty()) out += ",";
+  if (!range.empty()) out += (out.empty() ? "" : " ") + range;
+  if (!o.unit.empty() && o.section != "effect") out += fmt::format(" {}", o.unit);
+  if (o.required) out += ", required";
+  if (!o.default_value.empty()) out += fmt::format(", default `{}`", o.default_value);
+  if (!o.paper_default.empty()) out += fmt::format(" (variant paper: `{}`)", o.paper_default);
+  return out;
+}
+
+bool share_a_line(const Option& a, const Option& b) {
+  return a.meaning == b.meaning && value_of(a) == value_of(b);
+}
+
+/// Returns one line per option. Options that differ only in their keys share a line.
+std::string lines_of(std::string_view section) {
+  std::string out;
+  std::string keys;
+  const Option* last = nullptr;
+  const auto write = [&] {
+    if (last) out += fmt::format("- {} ({}): {}\n", keys, value_of(*last), last->meaning);
+    keys.clear();
+  };
+  for (const Option& o : options()) {
+    if (o.section != section) continue;
+    // A sensor has the keys of all sensors.
+    if (section == "sensor" && find_option("sensors", o.key)) continue;
+    if (last && !share_a_line(*last, o)) write();
+    keys += fmt::format("{}`{}`", keys.empty() ? "" : ", ", o.key);
+    last = &o;
+  }
+  write();
+  return out;
+}
 
 const SectionDescription kSections[] = {
     {"structure", "[structure]",
@@ -75,6 +167,13 @@ const SectionDescription kSections[] = {
 };
 
 }  // namespace
+
+std::string options_markdown() {
+  std::string out = kIntroduction;
+  for (const SectionDescription& s : section_table())
+    out += fmt::format("\n## `{}`\n\n{}\n\n{}", s.heading, s.text, lines_of(s.section));
+  return out;
+}
 
 std::span<const SectionDescription> section_table() {
   return kSections;

@@ -30,7 +30,6 @@ const Option kOptions[] = {
     {.section = "structure",
      .key = "frames_x",
      .type = texts,
-     .default_value = "[]",
      .meaning =
          "Names of the frames parallel to x, in order of y. Empty for a plane building along y.",
      .reload = restart,
@@ -38,7 +37,6 @@ const Option kOptions[] = {
     {.section = "structure",
      .key = "frames_y",
      .type = texts,
-     .default_value = "[]",
      .meaning =
          "Names of the frames parallel to y, in order of x. Empty for a plane building along x.",
      .reload = restart,
@@ -82,7 +80,6 @@ const Option kOptions[] = {
     {.section = "structure",
      .key = "floor",
      .type = choice,
-     .default_value = "\"flexible\"",
      .choices = "flexible|rigid",
      .meaning = "Whether floor panels shear in their plane.",
      .reload = restart,

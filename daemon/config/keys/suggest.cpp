@@ -10,7 +10,8 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
+/// Returns the number of insertions, deletions, replacements and swaps of neighbors that turn one
+/// word into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last, last(b.size() + 1), now(b.size() + 1);
   std::iota(last.begin(), last.end(), std::size_t{0});
@@ -27,7 +28,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last.back();
 }
 
-/// The key without the unit at its end: node_mass of node_mass_kg; empty when it names no unit.
+/// Returns the key without its unit: node_mass for node_mass_kg. Empty if it has no unit.
 std::string_view stem(std::string_view key) {
   constexpr std::string_view kUnits[] = {
       "_mps2_per_rthz", "_mps2", "_npm", "_kg", "_hz", "_m", "_s", "_bytes"};
@@ -36,7 +37,7 @@ std::string_view stem(std::string_view key) {
   return "";
 }
 
-/// node_mass, node_mass_t; not node_massive.
+/// Returns true for node_mass and node_mass_t, but not for node_massive.
 bool is_stem_with_another_unit(std::string_view key, std::string_view stem_of_option) {
   if (stem_of_option.empty() || !key.starts_with(stem_of_option)) return false;
   const std::string_view rest = key.substr(stem_of_option.size());

@@ -8,37 +8,41 @@
 
 namespace framewatch::daemon {
 
-/// text ... table: what TOML calls them. choice: one of a few texts. grid: a number, which stands
-/// for all, or nested lists of numbers.
+/// Type of a key's value. text to table are the names that TOML uses. choice is one of a few texts.
+/// grid is a number, which stands for all places, or nested lists of numbers.
 enum class OptionType { text, choice, integer, number, boolean, texts, grid, table };
 
-/// Value of a key, in the member that its type says.
+/// Value of a key. Which member holds it depends on the key's type.
 struct KeyValue {
-  double number = 0;      ///< of a number and of an integer
-  int integer = 0;        ///< of an integer; of a choice its place in the list of choices
-  bool boolean = false;   ///< of a boolean
-  std::string text = {};  ///< of a text
-  std::vector<std::string> texts = {};  ///< of a list of texts
-  std::vector<double> list = {};        ///< of a grid with one dimension
+  double number = 0;      ///< value of a number or an integer
+  int integer = 0;        ///< value of an integer; for a choice, its index in the list of choices
+  bool boolean = false;   ///< value of a boolean
+  std::string text = {};  ///< value of a text
+  std::vector<std::string> texts = {};  ///< value of a list of texts
+  std::vector<double> list = {};        ///< values of a grid with one dimension
 };
 
-/// Identity of a settings struct.
+/// Identifies a settings struct by the address of this variable.
 template <class Settings>
 inline constexpr char kOwner = 0;
 
-/// The field of a settings struct that holds the value of a key; `into` makes one. Default: none.
+/// Field of a settings struct that holds the value of a key. `into` makes one; a
+/// default-constructed target stands for no field.
 struct Target {
-  const void* owner = nullptr;                               ///< &kOwner of the struct; null: none
-  bool (*takes)(OptionType) = nullptr;                       ///< whether the field has this type
-  void (*store)(const KeyValue&, void* settings) = nullptr;  ///< settings: of the struct `owner`
-  std::string* (*text)(void* settings) = nullptr;            ///< the field; null: it is no text
-  void (*copy)(const void* from, void* to) = nullptr;        ///< the field alone
-  bool (*same)(const void* a, const void* b) = nullptr;      ///< whether the fields are equal
-  double (*converted)(double) = nullptr;  ///< unit of the key to unit of the field
+  const void* owner = nullptr;                ///< &kOwner of the struct; null without a field
+  bool (*takes)(OptionType) = nullptr;        ///< true if the field can hold a value of this type
+  KeyValue (*initial)(OptionType) = nullptr;  ///< value of the field in a new settings struct
+  void (*store)(const KeyValue&,
+                void* settings) = nullptr;               ///< sets the field of an `owner` struct
+  std::string* (*text)(void* settings) = nullptr;        ///< the field, or null for other types
+  void (*copy)(const void* from, void* to) = nullptr;    ///< copies only this field
+  bool (*same)(const void* a, const void* b) = nullptr;  ///< true if the fields are equal
+  double (*converted)(double) = nullptr;  ///< from the key's unit to the field's; linear
 
   explicit operator bool() const { return owner != nullptr; }
 
-  /// The same field in another unit than the key's.
+  /// Returns this target for a field whose unit differs from the key's. `unit` converts from the
+  /// key's unit to the field's and must be linear, because defaults are converted back.
   constexpr Target in(double (*unit)(double)) const {
     Target out = *this;
     out.converted = unit;
@@ -51,7 +55,7 @@ namespace target_detail {
 template <class Struct, class Field>
 Struct struct_of(Field Struct::*);
 
-/// object.*first.*second and so on.
+/// Returns object.*first.*second and so on.
 template <auto first, auto... rest>
 auto& field_of(auto& object) {
   if constexpr (sizeof...(rest) == 0)
@@ -100,6 +104,23 @@ void assign(const KeyValue& value, Field& field) {
     field.assign(value.list.begin(), value.list.end());
 }
 
+template <class Field>
+KeyValue value_of(const Field& field, OptionType type) {
+  KeyValue out;
+  if constexpr (takes<Field>(OptionType::boolean))
+    out.boolean = field;
+  else if constexpr (takes<Field>(OptionType::integer) || takes<Field>(OptionType::choice)) {
+    if (type != OptionType::number) out.integer = static_cast<int>(field);
+    out.number = static_cast<double>(field);
+  } else if constexpr (takes<Field>(OptionType::text))
+    out.text = field;
+  else if constexpr (takes<Field>(OptionType::texts))
+    out.texts = field;
+  else
+    out.list.assign(field.begin(), field.end());
+  return out;
+}
+
 template <class Settings, class Field, auto... path>
 constexpr auto text_access() -> std::string* (*)(void*) {
   if constexpr (std::same_as<Field, std::string>)
@@ -115,6 +136,11 @@ constexpr Target make() {
       std::remove_reference_t<decltype(field_of<first, rest...>(*static_cast<Settings*>(nullptr)))>;
   return {.owner = &kOwner<Settings>,
           .takes = takes<Field>,
+          .initial =
+              [](OptionType type) {
+                const Settings settings{};
+                return value_of<Field>(field_of<first, rest...>(settings), type);
+              },
           .store =
               [](const KeyValue& value, void* settings) {
                 assign(value, field_of<first, rest...>(*static_cast<Settings*>(settings)));
@@ -138,7 +164,7 @@ constexpr Target make() {
 template <auto first, auto... rest>
 inline constexpr Target into = target_detail::make<first, rest...>();
 
-/// Units of fields, for Target::in.
+/// Conversions for Target::in: degrees to radians and seconds to microseconds.
 inline double radians(double degrees) {
   return degrees * 3.14159265358979323846 / 180;
 }

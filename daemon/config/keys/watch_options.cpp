@@ -8,7 +8,80 @@ namespace {
 using enum OptionType;
 using enum Reach;
 
-const Option kOptions[] = {
+const Option kGap[] = {
+    {.section = "gap",
+     .key = "model",
+     .type = text,
+     .meaning = "Model file, relative to this file, from `framewatch diagnose` (model.toml) or "
+                "`framewatch adopt`. Default: learn a model without effects from the windows.",
+     .reload = settings,
+     .is_path = true,
+     .target = into<&GapSettings::model_path>},
+    {.section = "gap",
+     .key = "learn_s",
+     .unit = "s",
+     .min = 0,
+     .max = 1e6,
+     .above_min = true,
+     .meaning = "Total window time to learn a model.",
+     .reload = settings,
+     .target = into<&GapSettings::options, &estimator::GapOptions::learn_s>},
+    {.section = "gap",
+     .key = "window_s",
+     .type = integer,
+     .unit = "s",
+     .min = 1,
+     .max = 3600,
+     .meaning = "Comparison window; evaluated every second.",
+     .reload = settings,
+     .target = into<&GapSettings::options, &estimator::GapOptions::window_s>},
+    {.section = "gap",
+     .key = "raise_ratio",
+     .min = 0,
+     .max = 10,
+     .above_min = true,
+     .meaning =
+         "Raise a gap at this rms difference beyond noise over rms motion; clear at half of it.",
+     .reload = settings,
+     .target = into<&GapSettings::options, &estimator::GapOptions::raise_ratio>},
+    {.section = "gap",
+     .key = "lasting_s",
+     .unit = "s",
+     .min = 1,
+     .max = 86400,
+     .meaning = "Least duration of a gap before the event, and of its absence before clearing.",
+     .reload = settings,
+     .target = into<&GapSettings::options, &estimator::GapOptions::lasting_s>},
+    {.section = "gap",
+     .key = "store",
+     .type = text,
+     .meaning = "Directory for samples of each gap, relative to this file, for `framewatch "
+                "diagnose --event`. Default: not stored.",
+     .reload = settings,
+     .is_path = true,
+     .target = into<&GapSettings::store>},
+    {.section = "gap",
+     .key = "store_before_s",
+     .unit = "s",
+     .min = 0,
+     .max = 600,
+     .meaning = "Stored time before the gap.",
+     .reload = settings,
+     .target = into<&GapSettings::before_s>},
+    {.section = "gap",
+     .key = "store_after_s",
+     .unit = "s",
+     .min = 0,
+     .max = 600,
+     .meaning = "Stored time after the gap.",
+     .reload = settings,
+     .target = into<&GapSettings::after_s>},
+};
+
+using enum OptionType;
+using enum Reach;
+
+const Option kWatch[] = {
     {.section = "watch",
      .key = "baseline",
      .type = text,
@@ -20,7 +93,6 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "learn_s",
      .unit = "s",
-     .default_value = "60",
      .min = 0,
      .max = 1e6,
      .above_min = true,
@@ -30,7 +102,6 @@ const Option kOptions[] = {
      .target = into<&WatchSettings::options, &estimator::WatchOptions::learn_s>},
     {.section = "watch",
      .key = "smallest_change_k_ratio",
-     .default_value = "0.03",
      .min = 0,
      .max = 1,
      .meaning = "Smallest relevant change of a frame's stiffness (half for a group of stories). 0: "
@@ -39,7 +110,6 @@ const Option kOptions[] = {
      .target = into<&WatchSettings::options, &estimator::WatchOptions::least_change_k>},
     {.section = "watch",
      .key = "smallest_change_g_ratio",
-     .default_value = "0.2",
      .min = 0,
      .max = 1,
      .meaning = "The same for floor panels.",
@@ -47,7 +117,6 @@ const Option kOptions[] = {
      .target = into<&WatchSettings::options, &estimator::WatchOptions::least_change_g>},
     {.section = "watch",
      .key = "alarms_per_year",
-     .default_value = "1",
      .min = 0,
      .max = 1e6,
      .above_min = true,
@@ -57,7 +126,6 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "shaking_hours_per_year",
      .unit = "h",
-     .default_value = "10",
      .min = 0,
      .max = 8766,
      .above_min = true,
@@ -67,7 +135,6 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "quiet_window_s",
      .unit = "s",
-     .default_value = "3600",
      .min = 0,
      .max = 86400,
      .meaning = "Length of the long windows for weak motion. 0: off. Needs the sensors' noise.",
@@ -76,7 +143,6 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "quiet_learn_hours",
      .unit = "h",
-     .default_value = "24",
      .min = 0,
      .max = 8766,
      .above_min = true,
@@ -93,7 +159,6 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "follow_amplitude",
      .type = boolean,
-     .default_value = "true",
      .meaning = "Stiffness may follow the amplitude of the element's motion, once the baseline "
                 "spans a factor of 3.",
      .reload = settings,
@@ -154,8 +219,12 @@ const Option kOptions[] = {
 
 }  // namespace
 
+std::span<const Option> gap_options() {
+  return kGap;
+}
+
 std::span<const Option> watch_options() {
-  return kOptions;
+  return kWatch;
 }
 
 }  // namespace framewatch::daemon

@@ -2,20 +2,151 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
+#include <Eigen/Core>
 
-#include "daemon/config/plausibility/doubted_design.h"
+#include "daemon/base/toml_document.h"
 #include "daemon/config/plausibility/plausible_limits.h"
-#include "daemon/config/plausibility/value_place.h"
+#include "estimator/numeric/eigenvalues.h"
+#include "estimator/structure/matrices.h"
+#include "estimator/structure/natural_frequencies.h"
+#include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
 namespace {
 
-/// A length that may be in cm or mm where m is asked.
+/// Returns true if a section gives the key as a list instead of one number for all.
+bool is_list(const TomlValue& section, std::string_view key) {
+  const TomlEntry* entry = section.find(key);
+  return entry && entry->value.kind == TomlKind::array;
+}
+
+/// Returns the place of item `index` of `count` of a grid: of the number for all if it is not a
+/// list, or of the section if it lacks the key.
+TextPlace place_in(const TomlValue& section, std::string_view key, std::size_t index,
+                   std::size_t count) {
+  const TomlEntry* entry = section.find(key);
+  if (!entry) return section.place;
+  const TomlValue* value = &entry->value;
+  if (value->kind == TomlKind::array && value->items.size() == count) value = &value->items[index];
+  while (value->kind == TomlKind::array && !value->items.empty()) value = &value->items.front();
+  return value->place;
+}
+
+/// Appends warnings about [structure.design], whose table is `section`.
+void doubt_design(const TomlValue& section, const estimator::Structure& structure,
+                  const Eigen::VectorXd& design, std::vector<TextProblem>& doubts);
+
+/// Dense matrices of larger buildings take too long.
+constexpr int kMaxDegreesOfFreedom = 200;
+/// Factor of a frequency for a thousandfold stiffness or mass.
+constexpr double kThousandfold = 31.6;
+
+/// Returns the probable unit error behind an implausible frequency.
+std::string slip_of_frequency(double first_hz, PlausibleRange allowed) {
+  if (allowed.holds(first_hz * kThousandfold)) return "stiffness in kN/m where N/m is asked?";
+  if (allowed.holds(first_hz * kThousandfold * kThousandfold))
+    return "stiffness in MN/m where N/m is asked?";
+  if (allowed.holds(first_hz / kThousandfold)) return "mass in tonnes where kg is asked?";
+  return "stiffness in another unit than N/m, or mass in another one than kg?";
+}
+
+const char* stiffness_key(const estimator::Structure& s) {
+  return s.n() > 0 ? "kx_npm" : "ky_npm";
+}
+
+void doubt_frequency(const TomlValue& section, const estimator::Structure& s, double first_hz,
+                     std::vector<TextProblem>& doubts) {
+  const double height_m = std::accumulate(s.story_height.begin(), s.story_height.end(), 0.0);
+  const bool tall = height_m >= kMinBuildingStory_m * s.stories;
+  const double usual_hz = kFrequencyTimesHeight_mps / height_m;
+  const PlausibleRange allowed =
+      tall ? PlausibleRange{usual_hz / kMaxOffFrequency, usual_hz * kMaxOffFrequency}
+           : kModelFrequency_hz;
+  if (allowed.holds(first_hz)) return;
+  const std::string usual =
+      tall ? fmt::format("buildings of {:g} m have about {:.2g} Hz (46 / height)", height_m,
+                         usual_hz)
+           : fmt::format("models have {:g} to {:g} Hz", kModelFrequency_hz.least,
+                         kModelFrequency_hz.most);
+  doubts.push_back({place_in(section, stiffness_key(s), 0, static_cast<std::size_t>(s.stories)),
+                    fmt::format("structure.design: with these stiffnesses and masses the first "
+                                "natural frequency is {:.3g} Hz; {}: {}",
+                                first_hz, usual, slip_of_frequency(first_hz, allowed))});
+}
+
+/// Returns the damping ratio of the mode that is lowest without damping. Returns nullopt for a
+/// large building.
+std::optional<double> first_damping_ratio(const estimator::Structure& s,
+                                          const estimator::ParameterTable& table,
+                                          const Eigen::VectorXd& design) {
+  if (s.degrees_of_freedom() > kMaxDegreesOfFreedom) return std::nullopt;
+  const estimator::Matrices matrices = assemble(s, table, design);
+  const Eigen::MatrixXd r = floor_constraint(s);
+  const estimator::RealEigen modes = estimator::generalized_eigen(
+      r.transpose() * matrices.stiffness * r, r.transpose() * matrices.mass.asDiagonal() * r);
+  if (!modes.good || !(modes.values[0] > 0)) return std::nullopt;
+  const Eigen::VectorXd shape = r * modes.vectors.col(0);
+  return shape.dot(matrices.damping * shape) / (2 * std::sqrt(modes.values[0]));
+}
+
+void doubt_damping(const TomlValue& section, double ratio, std::vector<TextProblem>& doubts) {
+  if (kFirstDampingRatio.holds(ratio)) return;
+  const bool by_ratio = !section.find("cx_nspm") && !section.find("cy_nspm");
+  const char* key = by_ratio ? "damping_ratio" : section.find("cx_nspm") ? "cx_nspm" : "cy_nspm";
+  doubts.push_back(
+      {place_in(section, key, 0, 1),
+       fmt::format("structure.design: the first mode's damping ratio is {:.3g}; "
+                   "buildings have {:g} to {:g}: {}",
+                   ratio, kFirstDampingRatio.least, kFirstDampingRatio.most,
+                   by_ratio ? "0.02 stands for 2 %" : "damping in another unit than N*s/m?")});
+}
+
+/// Returns the stiffness of each story, summed over the frames of one direction.
+void doubt_unequal_stories(const TomlValue& section, const char* key, const estimator::Structure& s,
+                           int first_frame, int frames, const Eigen::VectorXd& design,
+                           std::vector<TextProblem>& doubts) {
+  if (frames == 0) return;
+  const estimator::ParameterTable table(s);
+  std::vector<double> stories(static_cast<std::size_t>(s.stories));
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < frames; ++f)
+      stories[static_cast<std::size_t>(story - 1)] +=
+          design[table.frame_stiffness(story, first_frame + f)];
+  const auto [least, most] = std::minmax_element(stories.begin(), stories.end());
+  if (!(*most > kMaxUnequalStories * *least)) return;
+  std::vector<double> sorted = stories;
+  std::nth_element(sorted.begin(), sorted.begin() + s.stories / 2, sorted.end());
+  const double usual = sorted[static_cast<std::size_t>(s.stories / 2)];
+  const auto odd = *most / usual > usual / *least ? most : least;
+  doubts.push_back(
+      {place_in(section, key, static_cast<std::size_t>(odd - stories.begin()), stories.size()),
+       fmt::format("structure.design.{}: story {} has {:.3g} N/m in all, story {} {:.3g} N/m; "
+                   "stories of one building hardly differ by more than {:g} times: a power of ten "
+                   "too many or too few?",
+                   key, most - stories.begin() + 1, *most, least - stories.begin() + 1, *least,
+                   kMaxUnequalStories)});
+}
+
+void doubt_design(const TomlValue& section, const estimator::Structure& s,
+                  const Eigen::VectorXd& design, std::vector<TextProblem>& doubts) {
+  const estimator::ParameterTable table(s);
+  doubt_frequency(section, s, lowest_frequency_hz(s, table, design), doubts);
+  if (const auto ratio = first_damping_ratio(s, table, design))
+    doubt_damping(section, *ratio, doubts);
+  doubt_unequal_stories(section, "kx_npm", s, 0, s.n(), design, doubts);
+  doubt_unequal_stories(section, "ky_npm", s, s.n(), s.m(), design, doubts);
+}
+
+/// Returns the probable unit error of a length in m.
 std::string slip_of_length(double value, PlausibleRange usual) {
   if (value > usual.most)
     for (const auto& [unit, per_m] : {std::pair("cm", 100.0), std::pair("mm", 1000.0)})

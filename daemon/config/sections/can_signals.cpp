@@ -1,12 +1,77 @@
 #include "daemon/config/sections/can_signals.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
 #include <fmt/core.h>
 
+#include "daemon/base/file_digest.h"
 #include "daemon/config/keys/suggest.h"
+#include "drivers/files/standard_streams.h"
 
 namespace framewatch::daemon {
+namespace {
+
+constexpr std::size_t kLongestInterface = 15;
+
+void read_dbc(const std::string& name, const Config& config, CanBusReading& bus,
+              std::vector<TextProblem>& problems) {
+  const std::filesystem::path beside = drivers::folder_of_paths_in(config.path);
+  const std::string path = (beside / name).string();
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  std::vector<drivers::Problem> found;
+  std::optional<drivers::Dbc> dbc;
+  if (text)
+    dbc = drivers::parse_dbc(path, *text, found);
+  else
+    bus.section.problem("dbc", fmt::format("{}: {}", path, error));
+  for (const drivers::Problem& p : found) problems.push_back({{}, p.message, p.where});
+  bus.known = bus.known && dbc;
+  if (!dbc) return;
+  for (drivers::DbcMessage& message : dbc->messages) {
+    const auto same =
+        std::find_if(bus.messages.begin(), bus.messages.end(),
+                     [&](const drivers::DbcMessage& other) { return other.name == message.name; });
+    if (same != bus.messages.end())
+      bus.section.problem("dbc", fmt::format("two files have the message {}, the second is {}",
+                                             message.name, path));
+    else
+      bus.messages.push_back(std::move(message));
+  }
+}
+
+}  // namespace
+
+std::vector<CanBusReading> read_can_buses(const TomlValue& document, Config& config,
+                                          std::vector<TextProblem>& problems) {
+  std::vector<CanBusReading> out;
+  for (const TomlValue* table : tables_of(document, "can", problems)) {
+    out.push_back({ConfigSection("can", "can", table, {}, problems), {}, true});
+    CanBusReading& bus = out.back();
+    ConfigSection& section = bus.section;
+    drivers::CanBusMap map;
+    section.read_into(map);
+    const double sync_s = section.number("sync_period_s");
+    map.sync_period_us = sync_s > 0 ? 1e6 * sync_s : 1e6 / config.pipeline.options.rate_hz;
+    if (section.good("sync_overflow") && map.sync_overflow == 1)
+      section.problem("sync_overflow", "must be 0 or 2 to 240, got 1");
+    if (section.given("interface") &&
+        (map.interface.empty() || map.interface.size() > kLongestInterface))
+      section.problem("interface",
+                      fmt::format("an interface's name has 1 to {} characters", kLongestInterface));
+    for (const drivers::CanBusMap& other : config.can.buses)
+      if (section.given("interface") && other.interface == map.interface)
+        section.problem("interface", fmt::format("{} has a [[can]] already", map.interface));
+    if (section.good("dbc"))
+      for (const std::string& name : section.texts("dbc")) read_dbc(name, config, bus, problems);
+    else
+      bus.known = false;
+    config.can.buses.push_back(map);
+  }
+  return out;
+}
 
 using drivers::DbcMessage;
 using drivers::DbcSignal;

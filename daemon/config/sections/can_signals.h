@@ -3,23 +3,37 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config/sections/can_buses.h"
+#include "daemon/config/keys/section.h"
+#include "daemon/config/sections/settings.h"
+#include "drivers/dbc/dbc.h"
 
 namespace framewatch::daemon {
 
-/// A signal with its message, or the problem that kept it from being found.
+/// A configured bus and the messages of its DBC files.
+struct CanBusReading {
+  ConfigSection section;
+  std::vector<drivers::DbcMessage> messages;
+  bool known = true;  ///< true if the DBC files could be read
+};
+
+/// Reads [[can]] and its DBC files into config.can.buses. `config.path` and the options must be
+/// set.
+std::vector<CanBusReading> read_can_buses(const TomlValue& document, Config& config,
+                                          std::vector<TextProblem>& problems);
+
+/// A signal with its message, or the reason why it was not found.
 struct CanSignal {
   const drivers::DbcMessage* message = nullptr;
   const drivers::DbcSignal* signal = nullptr;
   std::string problem;
 };
 
-/// "Message.Signal" of a bus' DBC files.
+/// Finds "Message.Signal" in the DBC files of a bus.
 CanSignal find_can_signal(const CanBusReading& bus, const std::string& text);
-/// Null when there is none.
+/// Returns the message, or null if `name` is unknown.
 const drivers::DbcMessage* find_can_message(const CanBusReading& bus, const std::string& name);
 std::string unknown_can_message(const CanBusReading& bus, const std::string& name);
-/// ", did you mean X?" or nothing.
+/// Returns ", did you mean X?" or an empty text.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace framewatch::daemon

@@ -20,7 +20,7 @@ namespace {
 
 using Channels = std::vector<ConfigSection>;
 
-/// Stands for a frame that does not exist; find_problems() skips its place.
+/// Marks a frame that does not exist; find_problems() skips its place.
 constexpr int kNoFrame = -2;
 
 std::string list_of_frames(const estimator::Structure& s) {
@@ -45,14 +45,15 @@ int frame_of(ConfigSection& section, const StructureReading& reading) {
   return kNoFrame;
 }
 
-/// Middle of the frames that are parallel to the other direction, m.
+/// Returns the middle of the frames that are parallel to the other direction, m.
 double middle_m(const estimator::Structure& s, estimator::Direction along) {
   const bool x = along == estimator::Direction::x;
   const int last = x ? s.frames() - 1 : s.n() - 1;
   return (x ? s.m() : s.n()) > 0 ? line_position(s, last) / 2 : 0;
 }
 
-/// A place in plan and where the axis points; empty: a base channel of the whole plan.
+/// Reads the place in plan and the direction of the axis into axis.plan. Leaves it empty for a base
+/// channel of the whole plan.
 void read_plan(ConfigSection& section, const StructureReading& reading,
                estimator::SensorAxis& axis) {
   const bool azimuth = section.given("azimuth_deg");
@@ -77,7 +78,7 @@ void read_plan(ConfigSection& section, const StructureReading& reading,
   axis.plan = place;
 }
 
-/// Story, frame, direction and place, and the rules between them.
+/// Reads story, frame, direction and place, and checks the rules between them.
 void read_place(ConfigSection& section, const StructureReading& reading,
                 estimator::SensorAxis& axis) {
   const bool names_frame = section.value("frame") != nullptr;
@@ -88,13 +89,14 @@ void read_place(ConfigSection& section, const StructureReading& reading,
                     axis.story > 0
                         ? "is missing: above the base a channel rides on a frame, or has a "
                           "direction or an azimuth, and a place x_m, y_m"
-                        : "is missing: a base channel says direction = \"x\" or \"y\"");
+                        : "is missing: a base channel needs direction = \"x\" or \"y\"");
   if (section.given("direction"))
     axis.direction =
         section.text("direction") == "y" ? estimator::Direction::y : estimator::Direction::x;
   if (!names_frame) return read_plan(section, reading, axis);
   for (const char* key : {"x_m", "y_m", "azimuth_deg"})
-    if (section.given(key)) section.problem(key, "a channel on a frame is where the frame is");
+    if (section.given(key))
+      section.problem(key, "not allowed with frame: the channel's place is the frame's");
   axis.frame =
       section.given("frame") && reading.frames_known ? frame_of(section, reading) : kNoFrame;
   if (axis.frame == kNoFrame) return;
@@ -126,7 +128,7 @@ AxisSource read_source(ConfigSection& channel, const std::string& label,
   return source;
 }
 
-/// A force has keys in N where an accelerometer has them in m/s^2.
+/// Reads the keys of a force in N, or refuses them for an accelerometer.
 void read_quantity(ConfigSection& section, estimator::SensorAxis& axis) {
   axis.is_force = section.given("quantity") && section.text("quantity") == "force";
   const auto refuse = [&](std::initializer_list<const char*> keys, const char* rule) {
@@ -135,10 +137,10 @@ void read_quantity(ConfigSection& section, estimator::SensorAxis& axis) {
   };
   if (!axis.is_force)
     return refuse({"offset_n", "range_n", "noise_n_per_rthz"},
-                  "is of a force: quantity = \"force\"");
+                  "is a key of forces: set quantity = \"force\"");
   refuse({"offset_mps2", "range_mps2", "noise_mps2_per_rthz"},
          "a force is in N: offset_n, range_n, noise_n_per_rthz");
-  refuse({"tilt_deg", "mount_angle_deg", "cross_channel"}, "is of an accelerometer");
+  refuse({"tilt_deg", "mount_angle_deg", "cross_channel"}, "is a key of accelerometers");
   if (section.given("offset_n")) axis.offset = section.number("offset_n");
   if (section.given("range_n")) axis.range = section.number("range_n");
   if (section.given("noise_n_per_rthz")) axis.noise_density = section.number("noise_n_per_rthz");
@@ -161,12 +163,12 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
       section.problem("name", rule);
   axis.vertical = section.given("direction") && section.text("direction") == "z";
   const auto leave = [&](const char* why) { config.unused.push_back({axis.name, why}); };
-  if (section.given("use") && !section.boolean("use")) return leave("its use is false");
+  if (section.given("use") && !section.boolean("use")) return leave("use = false");
   if (axis.vertical) {
     if (section.good("story")) axis.story = section.integer("story");
     if (axis.story > 0) return leave("it measures vertical motion above the base");
     if (!section.given("x_m") || !section.given("y_m"))
-      return leave("it measures vertical motion, and where in plan (x_m, y_m) is not said");
+      return leave("it measures vertical motion and has no place in plan (x_m, y_m)");
     axis.plan = estimator::PlanPlace{section.number("x_m"), section.number("y_m"), 0};
   } else {
     read_quantity(section, axis);
@@ -177,8 +179,8 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
   channels.push_back(std::move(section));
 }
 
-/// Leaves out verticals that do not show how the base rocks, and all where floor panels are
-/// identified: rocking is known to groups of stories alone.
+/// Leaves out vertical channels that do not show how the base rocks. Leaves out all of them if
+/// floor panels are identified, because only groups of stories include rocking.
 void leave_idle_verticals(const StructureReading& reading, Config& config, Channels& channels) {
   std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
   const std::vector<std::uint8_t> all(axes.size(), 1);
@@ -191,10 +193,10 @@ void leave_idle_verticals(const StructureReading& reading, Config& config, Chann
   for (std::size_t a = axes.size(); a-- > 0;) {
     if (!axes[a].vertical) continue;
     config.unused.push_back(
-        {axes[a].name, panels ? "it measures vertical motion, and floor panels are identified, for "
-                                "which the base does not rock"
-                              : "it measures vertical motion: how the base rocks is shown by three "
-                                "such channels that are no line, or by two along x or y"});
+        {axes[a].name,
+         panels ? "it measures vertical motion, but with floor panels rocking is not identified"
+                : "it measures vertical motion: rocking needs three such channels that are not in "
+                  "line, or two along x or y"});
     const auto at = static_cast<std::ptrdiff_t>(a);
     axes.erase(axes.begin() + at);
     config.sources.erase(config.sources.begin() + at);
@@ -202,7 +204,7 @@ void leave_idle_verticals(const StructureReading& reading, Config& config, Chann
   }
 }
 
-/// Cross channels are names: known once all channels are.
+/// Resolves the names of cross channels, after all channels are read.
 void find_cross_channels(Config& config, Channels& channels) {
   std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -236,8 +238,7 @@ void check_sources(const Config& config, Channels& channels) {
   }
 }
 
-/// Reports the problems that find_problems() has, at the lines of their channels, without those
-/// that were reported already.
+/// Reports the problems of find_problems() at their channels' lines, except those already reported.
 void check_against_structure(const StructureReading& reading, const Config& config,
                              TextPlace where_missing, Channels& channels,
                              std::vector<TextProblem>& problems) {

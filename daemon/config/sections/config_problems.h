@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,23 @@ struct ConfigProblem {
   std::string message;
 };
 
-/// Problems of a text as problems of its file, in order of place.
+/// Returns the problems of a text as problems of its file, ordered by place.
 std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextProblem> problems);
 
-/// All of them on stderr, a line each.
+/// Prints each problem as a line on stderr.
 void print_problems(const std::vector<ConfigProblem>& problems);
-/// The same of what is allowed and hardly meant, as log lines.
+/// Logs warnings about values that are allowed but implausible.
 void log_doubts(const std::vector<ConfigProblem>& doubts);
+
+/// Checks a parsed document and appends its problems.
+using TomlReader = std::function<void(const TomlValue&, std::vector<TextProblem>&)>;
+
+/// Parses a text and passes it to `read`. Appends every problem and returns false if there is any.
+/// `path` is the file name in messages.
+bool read_toml(const std::string& path, const std::string& text, const TomlReader& read,
+               std::vector<ConfigProblem>& problems);
+/// Does the same with a file.
+bool read_toml_file(const std::string& path, const TomlReader& read,
+                    std::vector<ConfigProblem>& problems);
 
 }  // namespace framewatch::daemon

@@ -15,7 +15,7 @@ std::vector<estimator::Effect> read_effects(const std::vector<const TomlValue*>&
                                             const std::vector<estimator::SensorAxis>& axes,
                                             std::vector<TextProblem>& problems);
 
-/// The same as text; reading it gives the same effects.
+/// Returns the effects as TOML. Reading it gives the same effects.
 std::string effects_toml(const std::vector<estimator::Effect>& effects,
                          const estimator::Structure& structure,
                          const std::vector<estimator::SensorAxis>& axes);

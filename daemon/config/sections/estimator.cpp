@@ -10,6 +10,30 @@ constexpr double kLongestOther = 20;
 
 }  // namespace
 
+LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("lcm");
+  ConfigSection section("lcm", "lcm", entry ? &entry->value : nullptr, {1, 1}, problems);
+  LcmSettings out;
+  section.read_into(out);
+  if (section.good("url") && out.url.find("://") == std::string::npos)
+    section.problem("url", fmt::format("expected a provider such as udpm://, memq:// or "
+                                       "file://, got \"{}\"",
+                                       out.url));
+  constexpr std::size_t kLongestSuffix = 24;
+  if (out.prefix.size() + kLongestSuffix > 63)
+    section.problem("prefix", fmt::format("at most {} characters: LCM allows a channel 63",
+                                          63 - kLongestSuffix));
+  return out;
+}
+
+CommandSettings read_commands(const TomlValue& document, std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("commands");
+  ConfigSection section("commands", "commands", entry ? &entry->value : nullptr, {1, 1}, problems);
+  CommandSettings out;
+  section.read_into(out);
+  return out;
+}
+
 estimator::EstimatorOptions read_estimator(const TomlValue& document,
                                            std::vector<TextProblem>& problems) {
   const TomlEntry* entry = document.find("estimator");

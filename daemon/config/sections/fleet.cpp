@@ -23,7 +23,7 @@ bool is_building(const std::string& name) {
          std::all_of(name.begin(), name.end(), allowed);
 }
 
-/// tls://HOST:PORT, without user, path and blanks: a password would go into logs.
+/// Returns true for tls://HOST:PORT without user, path and blanks. A password would appear in logs.
 bool is_hub(const std::string& url) {
   if (!url.starts_with(kScheme)) return false;
   const std::string rest = url.substr(kScheme.size());
@@ -55,12 +55,11 @@ std::optional<FleetSettings> read_fleet(const TomlValue& document, bool has_hist
     if (section.given(key) && section.text(key).empty()) section.problem(key, "must not be empty");
   for (const std::string& command : out.accept)
     if (std::find(kCommands.begin(), kCommands.end(), command) == kCommands.end())
-      section.problem("accept",
-                      fmt::format("'{}' is none of acknowledge, raw, resend, minutes", command));
+      section.problem(
+          "accept", fmt::format("must be acknowledge, raw, resend or minutes, got '{}'", command));
   if (!has_history)
     problems.push_back(
-        {section.where(),
-         "fleet: needs a section [history]: what waits for the hub is read from there"});
+        {section.where(), "fleet: needs [history], where messages wait for the hub"});
   return out;
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-// The sections of a configuration, each read by a source of its own: structure.cpp, design.cpp,
-// channels.cpp, estimator.cpp, lcm.cpp, commands.cpp, watch.cpp, gap.cpp, history.cpp,
-// event_report.cpp, fragility.cpp, actions.cpp, fleet.cpp.
+// Readers of the sections of a configuration.
 
 #include <optional>
 #include <string>
@@ -13,9 +11,9 @@
 
 namespace framewatch::daemon {
 
-/// Design parameters of a structure without problems.
+/// Design parameters of a valid structure.
 struct DesignReading {
-  Eigen::VectorXd theta;  ///< of every story; empty when the file has none
+  Eigen::VectorXd theta;  ///< parameters of every story; empty without a design
   estimator::BendingStiffness bending_nmprad{};
 };
 
@@ -32,15 +30,16 @@ struct StructureReading {
 
 StructureReading read_structure(const TomlValue& document, std::vector<TextProblem>& problems);
 
-DesignReading read_design(const TomlValue* design, const estimator::Structure& structure,
-                          bool shape_known, std::vector<TextProblem>& problems);
-
-/// Rule that a frame or channel name breaks; empty when it is good.
+/// Returns the rule that a frame or channel name breaks, or an empty text.
 std::string problem_of_name(const std::string& name);
 
-/// Every [[channel]] into config.pipeline.axes and config.sources.
+/// Reads every [[channel]] into config.pipeline.axes and config.sources.
 void read_channels(const TomlValue& document, const StructureReading& structure, Config& config,
                    std::vector<TextProblem>& problems);
+
+/// Reads [[can]], [[can_node]] and the sources of the channels into config.can. Reports problems of
+/// a DBC file at their place in it.
+void read_can(const TomlValue& document, Config& config, std::vector<TextProblem>& problems);
 
 estimator::EstimatorOptions read_estimator(const TomlValue& document,
                                            std::vector<TextProblem>& problems);
@@ -53,12 +52,12 @@ std::optional<HistorySettings> read_history(const TomlValue& document,
                                             std::vector<TextProblem>& problems);
 std::optional<EventReportSettings> read_event_report(const TomlValue& document,
                                                      std::vector<TextProblem>& problems);
-/// stories: of the structure; 0: not known.
+/// `stories`: number of stories, or 0 if unknown.
 std::optional<FragilitySettings> read_fragility(const TomlValue& document, int stories,
                                                 std::vector<TextProblem>& problems);
 std::optional<ActionSettings> read_actions(const TomlValue& document,
                                            std::vector<TextProblem>& problems);
-/// has_history: whether there is a section [history], without which nothing can wait for the hub.
+/// `has_history`: true if [history] exists; messages for the hub wait there.
 std::optional<FleetSettings> read_fleet(const TomlValue& document, bool has_history,
                                         std::vector<TextProblem>& problems);
 

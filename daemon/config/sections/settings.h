@@ -5,12 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config/keys/action_options.h"
 #include "daemon/config/keys/channel_options.h"
-#include "daemon/config/keys/command_options.h"
 #include "daemon/config/keys/event_report_options.h"
 #include "daemon/config/keys/fleet_options.h"
-#include "daemon/config/keys/gap_options.h"
 #include "daemon/config/keys/history_options.h"
 #include "daemon/config/keys/lcm_options.h"
 #include "daemon/config/keys/watch_options.h"
@@ -26,28 +23,28 @@ struct UnusedChannel {
   std::string name, reason;
 };
 
-/// One configuration file, defaults filled in.
+/// One configuration file with defaults filled in.
 struct Config {
   std::string path;
   std::string sha256;
-  /// SHA-256 of the values of each section of the file, by its name ("channel": of all channels).
+  /// SHA-256 of the values of each section, by its name ("channel" covers all channels).
   std::map<std::string, std::string> section_sha256;
   estimator::PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
   std::vector<UnusedChannel> unused;
-  std::optional<double> azimuth_y_deg;  ///< where the plan's y points, clockwise from north
+  std::optional<double> azimuth_y_deg;  ///< direction of the plan's y axis, clockwise from north
   LcmSettings lcm;
   CommandSettings commands;
-  drivers::CanMap can;                     ///< axes as in pipeline.axes
-  std::optional<WatchSettings> watch;      ///< none: nothing is watched
-  std::optional<GapSettings> gap;          ///< none: nothing is simulated beside the measurement
-  std::optional<HistorySettings> history;  ///< none: nothing is kept
-  std::optional<EventReportSettings> event_report;  ///< none: nothing is written after shaking
-  std::optional<FragilitySettings> fragility;       ///< none: drifts are told, damage is not judged
-  std::optional<ActionSettings> actions;            ///< none: nobody is notified
-  std::vector<estimator::Effect> effects;  ///< that the building has beyond the linear model
-  std::vector<ConfigProblem> doubts;       ///< allowed, and hardly meant; the person is told
-  std::optional<FleetSettings> fleet;      ///< of framewatch uplink; none: there is no hub
+  drivers::CanMap can;                              ///< axes as in pipeline.axes
+  std::optional<WatchSettings> watch;               ///< without it nothing is watched
+  std::optional<GapSettings> gap;                   ///< without it nothing is simulated
+  std::optional<HistorySettings> history;           ///< without it nothing is kept
+  std::optional<EventReportSettings> event_report;  ///< without it no report is written
+  std::optional<FragilitySettings> fragility;       ///< without it damage is not judged
+  std::optional<ActionSettings> actions;            ///< without it no notifications are sent
+  std::vector<estimator::Effect> effects;           ///< effects beyond the linear model
+  std::vector<ConfigProblem> doubts;   ///< warnings about allowed but implausible values
+  std::optional<FleetSettings> fleet;  ///< for `framewatch uplink`
 };
 
 }  // namespace framewatch::daemon

@@ -11,7 +11,7 @@
 #include <framewatch/acknowledged_t.hpp>
 
 #include "daemon/base/log.h"
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/service/service_manager.h"

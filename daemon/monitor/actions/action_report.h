@@ -6,7 +6,7 @@
 
 #include <framewatch/action_status_t.hpp>
 
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/actions/notifier.h"
 #include "daemon/monitor/events/raised_events.h"

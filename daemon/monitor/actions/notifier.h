@@ -15,7 +15,7 @@
 #include <framewatch/event_t.hpp>
 
 #include "daemon/base/log.h"
-#include "daemon/config/keys/action_options.h"
+#include "daemon/config/keys/event_report_options.h"
 
 namespace framewatch::daemon {
 

@@ -4,7 +4,7 @@
 
 #include "daemon/base/file_digest.h"
 #include "daemon/base/log.h"
-#include "daemon/config/baseline_file.h"
+#include "daemon/config/learned_files.h"
 #include "drivers/files/text_output.h"
 
 namespace framewatch::daemon {

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/utc_time.h"
-#include "daemon/config/gap_model.h"
+#include "daemon/config/learned_files.h"
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"

@@ -10,7 +10,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/config/channel_addresses.h"
-#include "daemon/config/gap_model.h"
+#include "daemon/config/learned_files.h"
 #include "drivers/files/caught.h"
 #include "drivers/lcm/lcm_log.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "estimator/motion/sample.h"

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/html_page.h"
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/monitor/event_report/report_words.h"
 
 namespace framewatch::daemon {

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/base/log.h"
 #include "daemon/base/served_file.h"
 #include "daemon/base/utc_time.h"

@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/html_page.h"
-#include "daemon/base/number_words.h"
+#include "daemon/base/numbers.h"
 #include "daemon/base/svg_plot.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/event_report/event_report.h"

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/event_report/event_report.h"
 #include "daemon/monitor/event_report/report_words.h"

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/number_words.h"
+#include "daemon/base/numbers.h"
 #include "daemon/base/utc_time.h"
 
 namespace framewatch::daemon {

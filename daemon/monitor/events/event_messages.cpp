@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/random_id.h"
+#include "daemon/base/process.h"
 #include "daemon/base/utc_time.h"
 
 namespace framewatch::daemon {

@@ -20,7 +20,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/base/sqlite_file.h"
 #include "daemon/monitor/history/history_files.h"
 #include "drivers/files/caught.h"

@@ -10,8 +10,8 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/history_status_t.hpp>
 
-#include "daemon/base/damaged_database.h"
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/sqlite_file.h"
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/history/history.h"

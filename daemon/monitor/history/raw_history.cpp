@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/config/axis_names.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/history/history_files.h"
 #include "drivers/lcm/lcm_log.h"
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/base/damaged_database.h"
+#include "daemon/base/sqlite_file.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimates/summary_intake.h"
 #include "daemon/monitor/history/summary_store.h"

@@ -7,7 +7,7 @@
 
 #include <framewatch/can_status_t.hpp>
 
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/live/live_estimation.h"
 #include "drivers/can/can_intake.h"

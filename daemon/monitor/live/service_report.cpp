@@ -1,8 +1,8 @@
 #include "daemon/monitor/live/service_report.h"
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/process_usage.h"
-#include "daemon/config/axis_names.h"
+#include "daemon/base/process.h"
+#include "daemon/config/channel_addresses.h"
 
 namespace framewatch::daemon {
 

@@ -8,7 +8,7 @@
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 
-#include "daemon/base/once_a_second.h"
+#include "daemon/base/clocks.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/live/state_keeper.h"

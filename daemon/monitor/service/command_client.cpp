@@ -15,7 +15,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/user_name.h"
+#include "daemon/base/process.h"
 #include "drivers/files/descriptor.h"
 #include "drivers/lcm/multicast/lcm_packet.h"
 

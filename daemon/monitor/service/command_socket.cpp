@@ -19,7 +19,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
-#include "daemon/base/user_name.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/service/command_client.h"
 
 namespace framewatch::daemon {

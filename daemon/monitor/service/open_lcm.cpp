@@ -7,7 +7,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
-#include "daemon/base/stop_signal.h"
+#include "daemon/base/signals.h"
 #include "drivers/lcm/lcm_provider.h"
 
 namespace framewatch::daemon {

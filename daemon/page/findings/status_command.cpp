@@ -15,9 +15,8 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
-#include "daemon/base/median.h"
+#include "daemon/base/numbers.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/terminal_colour.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"

@@ -1,6 +1,6 @@
 #include "daemon/page/metrics/metrics.h"
 
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/page/metrics/metric_families.h"
 
 namespace framewatch::daemon {

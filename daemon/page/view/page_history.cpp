@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/page/view/page_json.h"
 #include "estimator/numeric/nan.h"
 

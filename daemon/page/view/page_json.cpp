@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/monitor/estimates/estimate_table.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"

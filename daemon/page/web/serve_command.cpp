@@ -11,7 +11,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/log.h"
-#include "daemon/base/stop_signal.h"
+#include "daemon/base/signals.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"

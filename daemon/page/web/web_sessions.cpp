@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/base/served_file.h"
 #include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/tools/report/session_file.h"

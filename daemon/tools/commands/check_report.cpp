@@ -20,17 +20,16 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Below this share rounding is all there is.
+/// Below this share there is only rounding error.
 constexpr double kNoShear = 1e-9;
-/// Below this share 1 % sensor noise leaves a panel with an error of more than its value
-/// (method.md).
+/// Below this share 1 % sensor noise causes an error of a panel above its value (method.md).
 constexpr double kWeakShear = 0.01;
 /// The derivative filters' error is small up to a fifth of the sampling rate.
 constexpr double kUsableShareOfRate = 0.2;
-/// Larger buildings would keep a person waiting for dense matrices.
+/// Dense matrices of larger buildings take too long.
 constexpr int kMaxDegreesOfFreedom = 400;
 
-/// Bytes allocated by this process and not freed.
+/// Returns the bytes that this process has allocated and not freed.
 std::size_t allocated_bytes() {
 #ifdef __GLIBC__
   const struct mallinfo2 info = ::mallinfo2();
@@ -40,7 +39,7 @@ std::size_t allocated_bytes() {
 #endif
 }
 
-/// The first few names, and how many more.
+/// Returns the first few names and the number of the others.
 std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMax = 6;
   const std::size_t shown = std::min(names.size(), kMax);
@@ -118,7 +117,7 @@ void warn_about_force(CheckReport& report) {
       "its windows say it");
 }
 
-/// Tall or slender frames lengthen and shorten their columns, which makes them bend as a whole.
+/// Warns of tall or slender frames, which bend as a whole because their columns change length.
 void warn_about_bending(CheckReport& report) {
   const estimator::PipelineConfig& c = report.config.pipeline;
   const estimator::Structure& s = c.structure;

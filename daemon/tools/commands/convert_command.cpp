@@ -1,16 +1,18 @@
 #include "daemon/tools/commands/convert_command.h"
-#include "daemon/config/channel_addresses.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "daemon/base/log.h"
 #include "daemon/base/progress.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/config/config.h"
 #include "daemon/config/header_differences.h"
 #include "daemon/monitor/estimates/estimate_output.h"
@@ -26,6 +28,25 @@
 
 namespace framewatch::daemon {
 namespace {
+
+/// Returns the warning of `convert` without a configuration about headers that `out` cannot store.
+/// Empty if nothing is lost. `has_names`: the columns of `out` have names.
+std::string lost_headers(const drivers::Record& record, const std::string& out, bool has_names) {
+  constexpr std::size_t kNamed = 10;
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < record.headers.size(); ++c) {
+    if (record.headers[c] == drivers::AxisHeader{}) continue;
+    if (count++ < kNamed) names += (names.empty() ? "" : ", ") + record.names[c];
+  }
+  if (count == 0) return {};
+  if (count > kNamed) names += fmt::format(" and {} more", count - kNamed);
+  return fmt::format(
+      "{} does not keep what the headers say of {}: {}direction, place and unit; framewatch init "
+      "--record makes a configuration of the same files, and convert --config holds them against "
+      "one",
+      out, names, has_names ? "" : "name (nodes are numbered in the order of the files), ");
+}
 
 using drivers::AxisAddress;
 using drivers::Problem;
@@ -44,7 +65,7 @@ bool is_log(const std::string& path) {
   return path.ends_with(".lcmlog") || drivers::is_event_log(path);
 }
 
-/// What no file needs to be opened for.
+/// Checks the arguments that need no file.
 void check_arguments(const ConvertArguments& a, Problems& problems) {
   (void)record_options(a.record, problems);
   if (a.inputs.empty()) problems.push_back({"convert", "needs an input and an output file"});
@@ -69,7 +90,7 @@ bool is_force(const Record& record, const std::string& name) {
   return false;
 }
 
-/// Of the channel with that name, or of any accelerometer.
+/// Returns the range of the channel with that name, or of any accelerometer.
 drivers::PlausibleRange range_of(const std::optional<Config>& config, const Record& record,
                                  const std::string& name) {
   drivers::PlausibleRange range;
@@ -84,7 +105,7 @@ drivers::PlausibleRange range_of(const std::optional<Config>& config, const Reco
   return range;
 }
 
-/// Says what is implausible, and what the configuration contradicts.
+/// Logs implausible values and contradictions to the configuration.
 void look_at(const Record& record, const std::string& path, const std::optional<Config>& config,
              Problems& problems) {
   for (const std::string& doubt : drivers::implausible(
@@ -93,7 +114,7 @@ void look_at(const Record& record, const std::string& path, const std::optional<
     log(LogLevel::warning, doubt);
   const double configured_hz = config ? config->pipeline.options.rate_hz : record.rate_hz;
   if (std::abs(record.rate_hz / configured_hz - 1) > kRateTolerance)
-    log(LogLevel::warning, fmt::format("{}: sampled at {:.4g} Hz, but {} says rate_hz = {:g}", path,
+    log(LogLevel::warning, fmt::format("{}: sampled at {:.4g} Hz, but {} has rate_hz = {:g}", path,
                                        record.rate_hz, config->path, configured_hz));
 }
 
@@ -109,7 +130,7 @@ std::vector<Record> read_records(const ConvertArguments& a, const std::optional<
   return records;
 }
 
-/// Devices have a clock whose zero means nothing: a record of theirs begins at 0.
+/// Lets records of devices begin at 0, because the zero of their clock has no meaning.
 bool is_device(const Record& record) {
   return record.names == std::vector<std::string>{"x", "y", "z"};
 }
@@ -140,7 +161,7 @@ std::vector<AxisAddress> numbered(const Record& record, bool devices, const std:
   return result;
 }
 
-/// Keeps the columns the configuration knows, and says where they travel.
+/// Keeps the columns that the configuration knows and sets their LCM channel and node.
 std::vector<AxisAddress> configured(const Config& config, Record& record, Problems& problems) {
   const std::string& path = config.path;
   const std::vector<AxisAddress> known = addresses(config.sources);
@@ -165,7 +186,7 @@ std::vector<AxisAddress> configured(const Config& config, Record& record, Proble
   return result;
 }
 
-/// The one channel of `found` to convert, or the one that was asked for.
+/// Returns the channel that was asked for, or else the only one of `found`.
 std::string chosen(const std::vector<std::string>& found, const std::string& asked) {
   if (!asked.empty())
     return std::find(found.begin(), found.end(), asked) != found.end() ? asked : "";
@@ -181,8 +202,9 @@ std::string list(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-/// Of several windows' estimates those of the main one, which other_windows_s do not name; said on
-/// stderr. Empty when nobody asked for a channel and it is not there.
+/// Returns the channel of the main window among several windows' estimates, which other_windows_s
+/// does not name, and prints it on stderr. Returns an empty text if that channel is missing
+/// and `asked` is empty.
 std::string main_window(const std::vector<std::string>& estimates, const std::string& asked) {
   constexpr std::string_view kMain = "ESTIMATE";
   const auto is_main = [&](const std::string& name) { return name.ends_with(kMain); };
@@ -198,7 +220,7 @@ std::string main_window(const std::vector<std::string>& estimates, const std::st
   return *main;
 }
 
-/// Why there is not exactly one channel to convert.
+/// Returns why there is not exactly one channel to convert.
 std::string no_choice(const drivers::LogContents& contents, const std::string& asked) {
   const std::string channels =
       fmt::format("accelerations: {}; estimates: {}; other: {}", list(contents.accel),
@@ -206,7 +228,7 @@ std::string no_choice(const drivers::LogContents& contents, const std::string& a
   if (contents.accel.empty() && contents.estimates.empty())
     return "holds neither accelerations nor estimates; " + channels;
   if (!asked.empty()) return fmt::format("channel {} is not one to convert; {}", asked, channels);
-  return "say with --channel which to convert; " + channels;
+  return "choose one with --channel; " + channels;
 }
 
 void write_csv(const std::string& out, const Record& record, ProgressLine& progress,
@@ -229,7 +251,7 @@ void report(const Record& record) {
   for (const std::string& note : record.notes) log(LogLevel::notice, note);
 }
 
-/// The paper's removal of noise, P1 (22)-(27), on every channel.
+/// Applies the paper's noise removal, P1 (22)-(27), to every channel.
 void denoise(Record& record, Problems& problems) {
   const estimator::SvdDenoising denoising;
   if (record.time_s.size() < static_cast<std::size_t>(denoising.segment_rows())) {
@@ -259,7 +281,7 @@ void convert_log(const ConvertArguments& a, ProgressLine& progress, Problems& pr
                         "--config, --start-us and what says how a record is to be read are for "
                         "records, not for event logs"});
   if (!problems.empty()) return;
-  progress.follow_reading("looking what is in " + in, a.inputs, 1);
+  progress.follow_reading("reading " + in, a.inputs, 1);
   const auto contents = drivers::log_contents(in, problems);
   if (!contents) return;
   const std::string accel = chosen(contents->accel, a.channel);
@@ -270,16 +292,17 @@ void convert_log(const ConvertArguments& a, ProgressLine& progress, Problems& pr
     return;
   }
   if (!estimates.empty()) {
-    if (a.denoise) problems.push_back({"--denoise", "is for accelerations; this log has none"});
+    if (a.denoise)
+      problems.push_back({"--denoise", "needs accelerations; this log has no accelerations"});
     if (!problems.empty()) return;
     progress.follow_reading("converting " + in, a.inputs, 2);
     write_estimates_csv(in, estimates, a.boxplot, a.out, problems);
     return;
   }
-  if (a.boxplot) problems.push_back({"--boxplot", "is for estimates; this log has none"});
+  if (a.boxplot) problems.push_back({"--boxplot", "needs estimates; this log has no estimates"});
   progress.follow_reading("reading " + in, a.inputs, 1);
   auto record = drivers::read_accel_log(in, accel, problems);
-  Problems impossible;  // a log cannot be mended by hand: it is converted, and told
+  Problems impossible;  // a log cannot be corrected by hand: convert it and warn
   if (record) look_at(*record, in, {}, impossible);
   for (const Problem& p : impossible)
     log(LogLevel::warning, fmt::format("{}: {}", p.where, p.message));

@@ -2,18 +2,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include <fmt/core.h>
 
+#include "estimator/identify/groups/layout_prediction.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
 namespace {
 
-/// Off the frames' directions by more: an axis measures both.
+constexpr double kNeverSeen = 1;  // loss of the whole stiffness
+
+struct Weakest {
+  double loss = 0;
+  int story = 0;
+};
+
+Weakest weakest(const estimator::LayoutPrediction& p, const estimator::PipelineConfig& c) {
+  Weakest out;
+  for (int story = 1; story <= c.structure.stories; ++story)
+    for (int f = 0; f < c.structure.frames(); ++f) {
+      const double loss = p.smallest_loss[static_cast<std::size_t>(c.structure.dof(story, f))];
+      if (loss > out.loss) out = {loss, story};
+    }
+  return out;
+}
+
+/// Returns the channels of the highest measured floor, placed on another floor.
+std::vector<estimator::SensorAxis> copied_to(const estimator::PipelineConfig& c, int from,
+                                             int floor) {
+  std::vector<estimator::SensorAxis> out;
+  for (const estimator::SensorAxis& axis : c.axes) {
+    if (axis.story != from) continue;
+    out.push_back(axis);
+    out.back().story = floor;
+    out.back().name = fmt::format("{}-{}", axis.name, floor);
+  }
+  return out;
+}
+
+std::string percent(double ratio) {
+  return std::isfinite(ratio) ? fmt::format("{:.2g} %", 100 * ratio) : "-";
+}
+
+/// An axis that is farther off the frames' directions measures both.
 constexpr double kOblique_deg = 15;
-/// Stories in this upper part of a building drift little, and their drift is a difference of two
-/// floors that move alike.
+/// Stories in this upper part of a building drift little: their drift is a small difference of two
+/// floors.
 constexpr double kNearRoof = 0.8;
 constexpr double kSameSpot_m = 0.01, kParallel_rad = 0.02;
 
@@ -22,9 +59,8 @@ void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
   const estimator::PipelineConfig& c = config.pipeline;
   for (const GroupOutlook& g : outlook.groups)
     if (!std::isfinite(g.window_error))
-      out.push_back(
-          fmt::format("{}: this layout shows nothing of it: no value of it will ever be published",
-                      g.parameter));
+      out.push_back(fmt::format(
+          "{}: this layout does not show it: no value of it will be published", g.parameter));
     else if (!(g.window_error < c.options.max_error_k))
       out.push_back(fmt::format(
           "{}: its standard error will be {:.2g} %, above estimator.max_error_k = {:g} %: no value "
@@ -75,14 +111,15 @@ void free_top(const Config& config, const LayoutOutlook& outlook, std::vector<st
       stories, outlook.floors.back()));
 }
 
-/// Where an axis points, rad, counter-clockwise from +x.
+/// Returns the direction of an axis in rad, counter-clockwise from +x.
 double angle_of(const estimator::Structure& s, const estimator::SensorAxis& axis) {
   if (axis.plan) return axis.plan->angle_rad;
   const auto along = axis.frame >= 0 ? s.direction(axis.frame) : axis.direction;
   return along == estimator::Direction::x ? 0 : M_PI / 2;
 }
 
-/// Its place across the way it points, m: what distinguishes parallel axes of a rigid floor.
+/// Returns the position of an axis across its direction, m. It distinguishes parallel axes of a
+/// rigid floor.
 double across_m(const estimator::Structure& s, const estimator::SensorAxis& axis) {
   if (!axis.plan) return axis.frame >= 0 ? line_position(s, axis.frame) : 0;
   return std::abs(std::sin(axis.plan->angle_rad)) > std::abs(std::cos(axis.plan->angle_rad))
@@ -98,21 +135,21 @@ void contradictions(const Config& config, std::vector<std::string>& out) {
       if (one.story != two.story || one.vertical || two.vertical ||
           std::abs(across_m(c.structure, one) - across_m(c.structure, two)) > kSameSpot_m)
         continue;
-      // A place that nobody gave is no place that two share.
+      // Two channels without a place do not share one.
       if (!one.plan && one.frame < 0 && !two.plan && two.frame < 0) continue;
       const double apart =
           std::remainder(angle_of(c.structure, one) - angle_of(c.structure, two), 2 * M_PI);
       if (M_PI - std::abs(apart) < kParallel_rad)
-        out.push_back(fmt::format(
-            "channels '{}' and '{}' measure one motion of floor {} with opposite signs: they "
-            "contradict each other unless one is mounted backwards; if none is, an azimuth is "
-            "wrong, and their mean is no motion at all",
-            one.name, two.name, one.story));
+        out.push_back(
+            fmt::format("channels '{}' and '{}' measure one motion of floor {} with opposite "
+                        "signs: they contradict each other unless one is mounted backwards; "
+                        "otherwise an azimuth is wrong, and their mean is meaningless",
+                        one.name, two.name, one.story));
       else if (std::abs(apart) < kParallel_rad)
-        out.push_back(fmt::format(
-            "channels '{}' and '{}' measure one motion of floor {}: their mean is used; where they "
-            "contradict each other, nothing here can tell which one is right",
-            one.name, two.name, one.story));
+        out.push_back(
+            fmt::format("channels '{}' and '{}' measure one motion of floor {}: their mean is "
+                        "used; if they contradict each other, it is unknown which one is right",
+                        one.name, two.name, one.story));
     }
 }
 
@@ -131,6 +168,86 @@ void oblique(const Config& config, std::vector<std::string>& out) {
 }
 
 }  // namespace
+
+LayoutOutlook layout_outlook(const Config& config, int advise) {
+  const estimator::PipelineConfig& c = config.pipeline;
+  const estimator::ExpectedShaking shaking;
+  LayoutOutlook out;
+  out.shaking_mps2 = shaking.rms_mps2;
+  std::set<int> floors;
+  out.noise_configured = true;
+  for (const estimator::SensorAxis& axis : c.axes) {
+    if (axis.story > 0 && !axis.check) floors.insert(axis.story);
+    out.noise_configured = out.noise_configured && axis.noise_density > 0;
+  }
+  out.floors.assign(floors.begin(), floors.end());
+  const estimator::LayoutPrediction now =
+      predict_layout(c, estimator::noise_densities(c.axes), shaking);
+  const estimator::ParameterTable table = c.parameters();
+  for (int p = 0; p < table.size(); ++p) {
+    const auto i = static_cast<std::size_t>(p);
+    const bool stiffness = table[p].kind == estimator::ParameterKind::frame_stiffness;
+    if (!stiffness && table[p].kind != estimator::ParameterKind::bending_stiffness) continue;
+    out.groups.push_back(
+        {table[p].name, now.window_error[i], now.design_error[i],
+         stiffness ? now.window_error[i + static_cast<std::size_t>(table.elements())] : NAN});
+  }
+  const Weakest place = weakest(now, c);
+  out.least_seen_loss = place.loss;
+  out.weakest_story = place.story;
+  if (advise < 1 || floors.empty()) return out;
+  for (int floor = 1; floor <= c.structure.stories; ++floor) {
+    if (floors.contains(floor)) continue;
+    estimator::PipelineConfig more = c;
+    AdvisedFloor advised{floor, {}, 0};
+    for (const estimator::SensorAxis& axis : copied_to(c, *floors.rbegin(), floor)) {
+      advised.channels.push_back(axis.name);
+      more.axes.push_back(axis);
+    }
+    advised.least_seen_loss =
+        weakest(predict_layout(more, estimator::noise_densities(more.axes), shaking), more).loss;
+    out.advised.push_back(std::move(advised));
+  }
+  std::stable_sort(out.advised.begin(), out.advised.end(),
+                   [](const AdvisedFloor& a, const AdvisedFloor& b) {
+                     return a.least_seen_loss < b.least_seen_loss;
+                   });
+  if (out.advised.size() > static_cast<std::size_t>(advise))
+    out.advised.resize(static_cast<std::size_t>(advise));
+  return out;
+}
+
+std::string layout_text(const LayoutOutlook& o, const estimator::Structure& s) {
+  std::string floors;
+  for (const int floor : o.floors) floors += fmt::format("{}{}", floors.empty() ? "" : ", ", floor);
+  std::string out = fmt::format(
+      "identifiable groups of stories between the measured floors {} of {} (docs/partial.md)\n"
+      "            expected while the base shakes with {:g} m/s2 rms, sensors' noise {}:\n"
+      "            {:<16} {:>14} {:>17} {:>14}\n",
+      floors, s.stories, o.shaking_mps2, o.noise_configured ? "as configured" : "1e-4 m/s2/rtHz",
+      "stiffness", "+- one window", "+- by the design", "+- damping");
+  for (const GroupOutlook& g : o.groups)
+    out += fmt::format("            {:<16} {:>14} {:>17} {:>14}\n", g.parameter,
+                       percent(g.window_error), percent(g.design_error), percent(g.damping_error));
+  out +=
+      "            by the design: stories' shares in their group off by 5 %, masses by 2 %; the "
+      "same in every window\n";
+  if (o.least_seen_loss < kNeverSeen)
+    out += fmt::format(
+        "            by that noise alone, a story that loses {} of its stiffness is seen wherever "
+        "it "
+        "is; story {} needs so much\n",
+        percent(o.least_seen_loss), o.weakest_story);
+  else
+    out += fmt::format("            no loss of stiffness in story {} is seen by these sensors\n",
+                       o.weakest_story);
+  for (const AdvisedFloor& a : o.advised)
+    out += fmt::format("advice      with channels on floor {}: {}\n", a.floor,
+                       a.least_seen_loss < kNeverSeen
+                           ? percent(a.least_seen_loss) + " is seen everywhere"
+                           : "places without any remain");
+  return out;
+}
 
 std::vector<std::string> layout_warnings(const Config& config, const LayoutOutlook& outlook) {
   std::vector<std::string> out;

@@ -4,12 +4,45 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/tools/commands/layout_outlook.h"
 
 namespace framewatch::daemon {
 
-/// What a layout of sensors on some floors does not show, or hardly, what its channels contradict
-/// each other in, and what follows from it. config: of groups of stories.
+/// Expected accuracy of a group of stories, relative.
+struct GroupOutlook {
+  std::string parameter;  ///< kx_6to10
+  double window_error, design_error, damping_error;
+};
+
+/// A further measured floor and its gain.
+struct AdvisedFloor {
+  int floor;
+  std::vector<std::string> channels;  ///< its channels: as on the highest measured floor
+  double least_seen_loss;             ///< LayoutOutlook::least_seen_loss with this floor
+};
+
+/// Expected accuracy of a building with sensors on some floors, from its design.
+struct LayoutOutlook {
+  std::vector<int> floors;  ///< measured
+  double shaking_mps2;      ///< rms of the assumed base motion
+  bool noise_configured;
+  std::vector<GroupOutlook> groups;
+  /// Smallest relative stiffness loss that is detected at every place, and the place that sets it.
+  /// Infinite if some place never shows a loss.
+  double least_seen_loss = 0;
+  int weakest_story = 0;
+  std::vector<AdvisedFloor> advised;  ///< best first
+};
+
+/// Predicts accuracy from the design. `config` must have groups of stories. `advise`: largest
+/// number of floors to name.
+LayoutOutlook layout_outlook(const Config& config, int advise);
+
+/// Returns lines for people; the first one has the heading's column.
+std::string layout_text(const LayoutOutlook& outlook, const estimator::Structure& structure);
+
+/// Returns warnings about a layout with sensors on some floors: what it cannot show or shows
+/// poorly, contradictions between channels, and the consequences. `config` must have groups of
+/// stories.
 std::vector<std::string> layout_warnings(const Config& config, const LayoutOutlook& outlook);
 
 }  // namespace framewatch::daemon

@@ -7,11 +7,11 @@
 
 namespace framewatch::daemon {
 
-/// The result of one check of the machine.
+/// Result of one check of the machine.
 struct MachineCheck {
   bool good = false;
   std::string name, found;
-  std::string remedy = {};  ///< what to do about it; empty when it is good
+  std::string remedy = {};  ///< what to do; empty if the check is good
 };
 
 /// Checks that LCM delivers messages published on this machine.
@@ -26,13 +26,13 @@ MachineCheck check_estimate();
 MachineCheck check_disk(const std::string& directory);
 
 struct SelftestArguments {
-  std::string config;           ///< whose LCM settings count; empty: the defaults
-  std::string directory = ".";  ///< where state and records would go
+  std::string config;           ///< file with the LCM settings; empty for the defaults
+  std::string directory = ".";  ///< folder for state and records
   bool json = false;
 };
 
-/// framewatch selftest: whether this machine can carry a daemon, one line each. Exit code: 0 all
-/// good, 1 not all, 2 bad configuration.
+/// Runs `framewatch selftest`: checks if this machine can run a daemon, one line per check. Returns
+/// 0 if all are good, 1 if not, 2 for a bad configuration.
 int selftest(const SelftestArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -1,10 +1,13 @@
 #include "daemon/tools/demo/demo_command.h"
-#include "daemon/config/channel_addresses.h"
 
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
@@ -13,27 +16,86 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/page/view/live_view.h"
 #include "daemon/page/web/web_server.h"
 #include "daemon/page/web/web_socket.h"
-#include "daemon/tools/demo/demo_can.h"
-#include "daemon/tools/demo/demo_logs.h"
 #include "daemon/tools/demo/demo_network.h"
 #include "daemon/tools/demo/demo_scenario.h"
 #include "daemon/tools/demo/demo_view.h"
-#include "daemon/tools/simulation/can_output.h"
+#include "daemon/tools/report/report_command.h"
 #include "daemon/tools/simulation/scenario.h"
 #include "daemon/tools/simulation/simulation.h"
 #include "daemon/tools/simulation/simulation_output.h"
 #include "drivers/can/can_source.h"
+#include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/lcm_source.h"
 
 namespace framewatch::daemon {
 namespace {
 
-/// Beside LCM's usual port, so that a demo and a live system or another demo do not mix.
+/// Logs of a demo with a report, in a temporary folder. Without a report nothing is stored.
+class DemoLogs {
+ public:
+  /// `report`: page to write; empty for none.
+  explicit DemoLogs(const std::string& report);
+  ~DemoLogs();
+  DemoLogs(const DemoLogs&) = delete;
+  DemoLogs& operator=(const DemoLogs&) = delete;
+
+  void raw(std::int64_t time_us, const std::string& channel, const void* data, std::size_t size);
+  void estimate(std::int64_t time_us, const std::string& channel,
+                const std::vector<std::uint8_t>& bytes);
+  /// Closes the logs and writes the report. `building`: the shaken building.
+  void write_report(const DemoBuilding& building);
+
+ private:
+  std::string report_, folder_;
+  bool open_ = false;
+  drivers::LcmLogWriter raw_, estimates_;
+};
+
+DemoLogs::DemoLogs(const std::string& report) : report_(report) {
+  if (report_.empty()) return;
+  char name[] = "/tmp/framewatch-demo-XXXXXX";
+  if (const char* made = ::mkdtemp(name)) folder_ = made;
+  open_ = !folder_.empty() && raw_.open(folder_ + "/raw.lcmlog") &&
+          estimates_.open(folder_ + "/estimates.lcmlog");
+  if (!open_) fmt::print(stderr, "framewatch demo: no log in /tmp, so no report\n");
+}
+
+DemoLogs::~DemoLogs() {
+  std::error_code ignored;
+  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+void DemoLogs::raw(std::int64_t time_us, const std::string& channel, const void* data,
+                   std::size_t size) {
+  open_ = open_ && raw_.write(time_us, channel, data, size);
+}
+
+void DemoLogs::estimate(std::int64_t time_us, const std::string& channel,
+                        const std::vector<std::uint8_t>& bytes) {
+  open_ = open_ && estimates_.write(time_us, channel, bytes.data(), bytes.size());
+}
+
+void DemoLogs::write_report(const DemoBuilding& building) {
+  if (report_.empty()) return;
+  const std::string config = folder_ + "/building.toml";
+  std::ofstream(config) << building.config_text;
+  if (!open_ || !raw_.close() || !estimates_.close()) return;
+  ReportArguments a;
+  a.estimates = folder_ + "/estimates.lcmlog";
+  a.config = config;
+  if (raw_.events() > 0) a.raw = {folder_ + "/raw.lcmlog"};
+  a.out = report_;
+  a.title = building.title;
+  if (report(a) != 0) fmt::print(stderr, "framewatch demo: no report\n");
+}
+
+/// Returns a port other than LCM's usual one, so that demos and live systems do not mix.
 int demo_port() {
   return 7700 + static_cast<int>(::getpid() % 1000);
 }
@@ -41,7 +103,7 @@ int demo_port() {
 constexpr double kDropAt_s = 20;
 constexpr double kFlush_s = 0.05;
 
-/// The four parties of the demo, each with its own LCM where the provider allows it.
+/// The four parties of the demo, each with a separate LCM instance if the provider allows it.
 class DemoBus {
  public:
   bool open(const DemoNetwork& network, const drivers::LcmReception& reception,
@@ -74,7 +136,7 @@ void introduce(const DemoBuilding& building, const DemoNetwork& network, double 
   if (!network.in_process) fmt::print("Listen with LCM_DEFAULT_URL='{}'.\n", network.url);
   if (!page.empty()) fmt::print("\n  Open {}\n\n", page);
   if (seconds > kDropAt_s)
-    fmt::print("At {:g} s {} loses {:g} % of its stiffness: see where it shows.\n", kDropAt_s,
+    fmt::print("At {:g} s {} loses {:g} % of its stiffness: watch where it shows.\n", kDropAt_s,
                element_words(building.loses), 100 * building.loss_ratio);
   std::fflush(stdout);
 }
@@ -82,7 +144,7 @@ void introduce(const DemoBuilding& building, const DemoNetwork& network, double 
 /// The parties of the demo, each served in turn by one thread.
 struct DemoLoop {
   const Scenario& scenario;
-  double forgotten_s;  ///< after the loss
+  double forgotten_s;  ///< time after the loss
   double seconds;
   SimulationOutput& sensors;
   drivers::LcmSource& source;
@@ -93,9 +155,9 @@ struct DemoLoop {
   WebServer& server;
   DemoView& view;
 
-  /// Shakes the building in real time. False when a party failed, which was printed.
+  /// Shakes the building in real time. Prints the error and returns false if a party failed.
   bool shake();
-  /// Waits for the last messages, which may still be on their way on a busy machine.
+  /// Waits for the last messages, which can be late on a busy machine.
   void receive_rest(const Estimation& estimation);
 };
 
@@ -109,7 +171,7 @@ bool DemoLoop::shake() {
       fmt::print(stderr, "framewatch demo: {}\n", sensors.error());
       return false;
     }
-    // All messages of this instant are on their way; the next one is put when it is due.
+    // All messages of this instant are sent; the next instant follows when it is due.
     if (!source.handle(1)) {
       fmt::print(stderr, "framewatch demo: LCM failed\n");
       return false;
@@ -148,7 +210,7 @@ int demo(const DemoArguments& a) {
   if (!a.can.empty()) put_on_can(scenario.config, a.can);
   scenario.duration_s = a.seconds;
   scenario.changes.push_back({kDropAt_s, after_loss(building)});
-  // Before the network: the page is for a browser outside of it.
+  // Start the page before the private network, so that browsers outside reach it.
   std::string no_page;
   int socket = listen_on("127.0.0.1", a.port, no_page);
   if (socket < 0) socket = listen_on("127.0.0.1", 0, no_page);
@@ -172,7 +234,7 @@ int demo(const DemoArguments& a) {
         return {true, "the demo has no daemon to tell", {}};
       });
   WebServer server(web, live);
-  // The page draws samples of LCM messages.
+  // Without LCM samples there is no page to draw.
   const bool served = a.can.empty() && socket >= 0 && server.start(socket, no_page);
   if (!served && a.can.empty()) fmt::print(stderr, "framewatch demo: no page: {}\n", no_page);
   if (!a.quiet)

@@ -51,14 +51,14 @@ bool add_multicast_route(int fd) {
   return ::ioctl(fd, SIOCADDRT, &route) == 0;
 }
 
-/// Our own user stays who it was, so files keep their owner.
+/// Maps the user to itself, so that files keep their owner.
 void keep_user(uid_t user, gid_t group) {
   std::ofstream("/proc/self/setgroups") << "deny";
   std::ofstream("/proc/self/uid_map") << fmt::format("{} {} 1", user, user);
   std::ofstream("/proc/self/gid_map") << fmt::format("{} {} 1", group, group);
 }
 
-/// Asked before LCM is, which prints a page of advice when there is none.
+/// Checked before starting LCM, which prints a page of advice without a route.
 bool has_multicast_route() {
   const drivers::Descriptor socket = datagram_socket();
   sockaddr group{};
@@ -104,7 +104,7 @@ DemoNetwork open_demo_network(int port) {
   std::string error;
   if (enter_private_network(error) && lcm_round_trip(url))
     return {url, false,
-            "LCM over UDP multicast in a network namespace of its own: this machine has no "
+            "LCM over UDP multicast in a private network namespace, because this machine has no "
             "multicast route"};
   return {"memq://", true,
           fmt::format("LCM inside one process (memq): this machine has no multicast route and "

@@ -82,7 +82,7 @@ void DemoView::estimate(const drivers::LcmMessage& message) {
   if (next_sequence_ >= 0) lost_ += std::max<std::int64_t>(estimate.sequence - next_sequence_, 0);
   next_sequence_ = estimate.sequence + 1;
   ++windows_;
-  // A window thinned of its statistics leaves those of the one before on the screen.
+  // A window without statistics keeps the previous ones on the screen.
   if (estimate.boxplots == 0) {
     estimate.q1 = std::move(estimate_.q1);
     estimate.median = std::move(estimate_.median);
@@ -133,7 +133,7 @@ int DemoView::finish() {
     return 1;
   }
   if (!quiet_) {
-    // The live table is cut to the terminal's width; the last one is whole.
+    // Cuts the live table to the terminal's width, but not the last one.
     if (lines_drawn_ > 0) fmt::print("\x1b[{}A\x1b[0J", lines_drawn_);
     for (const std::string& line : estimate_table(*table_, estimate_, truth_))
       fmt::print("{}\n", line);

@@ -21,15 +21,15 @@ class DemoView {
   static constexpr double kFrameLimit_ratio = 0.01;
   static constexpr double kPanelLimit_ratio = 0.05;
 
-  /// Truth by parameter name, SI.
+  /// `truth`: true values by parameter name, SI.
   DemoView(std::map<std::string, double> truth, bool terminal, bool quiet);
 
   /// Sets the truth that the estimates are compared with from now on.
   void set_truth(std::map<std::string, double> truth);
-  /// The LCM channels that message() takes.
+  /// Returns the LCM channels of message().
   static std::vector<std::string> channels(const std::string& prefix);
   void message(const drivers::LcmMessage& message);
-  /// `elapsed_s` of `total_s` have passed; draws when it is time to.
+  /// Draws if it is time to. `elapsed_s` of `total_s` have passed.
   void update(double elapsed_s, double total_s);
   /// Prints the table and whether the newest window's stiffnesses are within the limits. Exit code.
   int finish();
@@ -38,7 +38,7 @@ class DemoView {
   void parameters(const drivers::LcmMessage& message);
   void estimate(const drivers::LcmMessage& message);
   std::string state() const;
-  /// Over what was drawn before.
+  /// Draws over the previous picture.
   void draw(const std::string& last_line);
 
   std::map<std::string, double> truth_by_name_;
@@ -48,8 +48,8 @@ class DemoView {
   std::vector<double> truth_;  ///< in the table's order
   std::int64_t windows_ = 0;
   std::int64_t valid_ = 0;
-  std::int64_t lost_ = 0;            ///< jumps of the sequence
-  std::int64_t next_sequence_ = -1;  ///< -1: none seen yet
+  std::int64_t lost_ = 0;            ///< lost messages, by jumps of the sequence
+  std::int64_t next_sequence_ = -1;  ///< -1 before the first message
   double worst_frame_ratio_ = 0;     ///< of all valid windows
   double worst_panel_ratio_ = 0;
   double next_draw_s_ = 0;

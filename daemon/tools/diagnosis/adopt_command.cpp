@@ -5,7 +5,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/config/config.h"
-#include "daemon/config/gap_model.h"
+#include "daemon/config/learned_files.h"
 #include "daemon/config/sections/config_problems.h"
 #include "drivers/files/text_output.h"
 #include "estimator/structure/effect.h"

@@ -7,7 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/tools/init/draft.h"
+
 namespace framewatch::daemon {
+
+// Questions about the start of tuning: a first natural frequency or period, stiffnesses, a rule of
+// the field, or nothing. Used as members of InitQuestion.
+std::string ask_start(const BuildingDraft& draft);
+std::string initial_start(const BuildingDraft& draft);
+std::string take_start(const std::string& text, BuildingDraft& draft, ColumnCache& files);
 
 /// "4.2, 3.5 m": numbers, and what stands behind them.
 struct Quantity {

@@ -2,15 +2,40 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "daemon/tools/init/place.h"
+#include "daemon/tools/init/building_plan.h"
 #include "drivers/records/record.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
 
-/// What can become a channel: a column of a record, a signal of a CAN bus, an axis of an LCM node.
+/// Place and direction of an accelerometer of the building.
+struct Place {
+  int story = 0;   ///< 0: base
+  int frame = -1;  ///< it rides on; -1: on the base
+  estimator::Direction direction = estimator::Direction::x;
+  bool operator==(const Place&) const = default;
+};
+
+/// Every place that needs a channel: the base in each direction that has frames, then floor by
+/// floor every frame.
+std::vector<Place> places_of(const estimator::Structure& structure);
+
+/// "base, along x" or "floor 2, frame y1, along x".
+std::string place_text(const estimator::Structure& structure, const Place& place);
+
+/// As --channel takes it: "0:x" for the base, "2:y1" for a frame; "base" and "roof" for the floor,
+/// "2:x" where only one frame moves along x.
+std::optional<Place> parse_place(const estimator::Structure& structure, std::string_view text);
+std::string place_option(const estimator::Structure& structure, const Place& place);
+
+/// The only frame that moves along a direction.
+std::optional<int> only_frame(const estimator::Structure& structure, estimator::Direction along);
+
+/// A candidate for a channel: a column of a record, a signal of a CAN bus or an axis of an LCM
+/// node.
 struct ChannelColumn {
   std::string name;
   std::string source;               ///< TOML of its `source`; empty: from files only
@@ -18,7 +43,7 @@ struct ChannelColumn {
   drivers::AxisHeader header = {};  ///< what its file says of it
 };
 
-/// Where a channel of a network's station is: at a place in plan, in a direction of the compass.
+/// Place in plan and compass direction of a channel of a network's station.
 struct StationPlace {
   int story = 0;
   std::string why_unused;             ///< empty: it is used
@@ -37,7 +62,8 @@ struct PlannedChannel {
 struct BuildingPlan {
   estimator::Structure structure;
   std::string mass_from;  ///< "7200 kg a floor", for a comment
-  /// Of each story, all frames of a direction together, N/m; empty: no design, or no such frame.
+  /// Stiffness of each story, all frames of a direction together, N/m. Empty without a design or
+  /// such a frame.
   std::vector<double> story_kx_npm, story_ky_npm;
   std::string stiffness_from;  ///< for a comment
   double rate_hz = 100;

@@ -42,7 +42,7 @@ bool all_equal(const std::vector<double>& items) {
   return std::all_of(items.begin(), items.end(), [&](double v) { return v == items.front(); });
 }
 
-/// Consecutive pieces of `size` values.
+/// Splits values into consecutive pieces of `size`.
 std::vector<std::vector<double>> pieces(const std::vector<double>& items, std::size_t size) {
   std::vector<std::vector<double>> out;
   for (std::size_t i = 0; i < items.size(); i += size)
@@ -51,7 +51,7 @@ std::vector<std::vector<double>> pieces(const std::vector<double>& items, std::s
   return out;
 }
 
-/// [story][y][x], a line for each story.
+/// Returns a grid [story][y][x] with a line for each story.
 std::string node_mass(const estimator::Structure& s) {
   if (all_equal(s.node_mass)) return number(s.node_mass.front());
   const auto row = static_cast<std::size_t>(std::max(s.m(), 1));
@@ -61,7 +61,7 @@ std::string node_mass(const estimator::Structure& s) {
       [&](const std::vector<double>& nodes) { return list(pieces(nodes, row), numbers); }, ",\n  ");
 }
 
-/// [story][frame], each story's divided among its frames as the plan is.
+/// Returns a grid [story][frame]: each story's stiffness divided among its frames by the plan.
 std::string frame_stiffness(const std::vector<double>& stories, const std::vector<double>& spans) {
   const std::vector<double> shares = shares_of_frames(spans);
   if (all_equal(stories) && all_equal(shares)) return number(stories.front() * shares.front());
@@ -74,7 +74,8 @@ std::string frame_stiffness(const std::vector<double>& stories, const std::vecto
 
 std::string head(const BuildingPlan& p) {
   std::string out =
-      "# Made by `framewatch init`. Change what is not so, then: framewatch check this file.\n"
+      "# Made by `framewatch init`. Correct it if needed, then run `framewatch check` on this "
+      "file.\n"
       "# What to look at first: node_mass_kg, which sets the scale of every stiffness, and where "
       "each\n"
       "# [[channel]] is. docs/configuration.md has every key.\n";
@@ -148,7 +149,7 @@ std::string can_section(const BuildingPlan& p) {
       quoted(p.can_interface), quoted(p.dbc));
 }
 
-/// At a place in plan. What the header says stands beside it.
+/// Returns a channel at a place in plan, with the header's description as a comment.
 std::string station_channel_section(const PlannedChannel& channel) {
   const StationPlace& at = *channel.station;
   const drivers::AxisHeader& header = channel.column.header;

@@ -20,7 +20,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Rates are round numbers; times in a file are rounded.
+/// Largest relative rounding of a rate: rates are round numbers, but times in a file are rounded.
 constexpr double kRounding = 1e-3;
 
 double round_rate_hz(double rate_hz) {
@@ -63,7 +63,7 @@ void set_option(const std::string& name, const std::string& value, RecordAnswer&
   }
 }
 
-/// Names on lines of their own; one that is a pattern stands for the files it fits.
+/// Splits names on separate lines and expands patterns to the matching files.
 std::vector<std::string> files_of(const std::string& text) {
   std::vector<std::string> out;
   std::size_t at = 0;

@@ -9,7 +9,7 @@
 
 namespace framewatch::daemon {
 
-/// What a record, or the signals of a CAN bus, can be channels of.
+/// The candidates for channels of a record or a CAN bus.
 struct ChannelColumns {
   std::vector<ChannelColumn> columns;
   double rate_hz = 0;              ///< of a record, rounded as its times are; 0: not known
@@ -17,15 +17,15 @@ struct ChannelColumns {
   std::string problem;             ///< why there is nothing, of several lines; empty: all is well
 };
 
-/// Of several files the channels of all, which must have one clock.
+/// Returns the channels of all files, which must share one clock.
 ChannelColumns columns_of_records(const std::vector<std::string>& paths,
                                   const RecordFileArguments& arguments);
 
 /// The signals of a DBC file whose unit is one of acceleration.
 ChannelColumns columns_of_dbc(const std::string& path, const std::string& interface);
 
-/// "rec.csv --unit g" as a person answers: the file's name, or a pattern of several
-/// ("np8040/*.V1c.gz"), and options of them. A word that is no such option is a problem.
+/// The answer "rec.csv --unit g": a file name or pattern ("np8040/*.V1c.gz") and options. A word
+/// that is not such an option is a problem.
 struct RecordAnswer {
   std::vector<std::string> paths;  ///< one at least
   RecordFileArguments arguments;

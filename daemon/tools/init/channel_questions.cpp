@@ -5,15 +5,103 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
-#include "daemon/tools/init/place.h"
-#include "daemon/tools/init/station_questions.h"
+#include "daemon/tools/init/building_plan.h"
+#include "daemon/tools/init/station_layout.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {
 namespace {
 
+class StationPlacing {
+ public:
+  StationPlacing(const InitAnswers& answers, InitReading& reading)
+      : answers_(answers), reading_(reading), columns_(reading.draft.columns) {}
+
+  void place() {
+    check_answers();
+    std::string list;
+    BuildingDraft& d = reading_.draft;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const auto at = place_of(c);
+      if (!at) continue;
+      list += fmt::format("\n     {:<18} {}", printable(columns_[c].name), station_place_text(*at));
+      d.plan.channels.push_back({{}, columns_[c], at});
+    }
+    if (!reading_.open.empty()) return;
+    d.plan.azimuth_y_deg = d.station->azimuth_y_deg;
+    reading_.understood.push_back({"channel", "channels", list});
+  }
+
+ private:
+  void refuse(const std::string& answer, const std::string& why) {
+    reading_.open.push_back({"channel", "", "", printable(answer) + ": " + why, {}, answer, ""});
+  }
+
+  void check_answers() {
+    for (const std::string& text : answers_.channels) {
+      const std::size_t equals = text.rfind('=');
+      const bool known = equals != std::string::npos &&
+                         std::any_of(columns_.begin(), columns_.end(), [&](const auto& column) {
+                           return column.name == text.substr(0, equals);
+                         });
+      if (equals == std::string::npos)
+        refuse(text, "write NAME=PLACE, such as ch3=2, ch3=roof:x or ch3=unused");
+      else if (!known)
+        refuse(text, "there is no such channel");
+    }
+  }
+
+  /// Returns the answer about a channel, or an empty text.
+  std::string answer_about(const std::string& name) const {
+    for (const std::string& text : answers_.channels)
+      if (const std::size_t equals = text.rfind('=');
+          equals != std::string::npos && text.substr(0, equals) == name)
+        return text;
+    return {};
+  }
+
+  std::optional<StationPlace> place_of(std::size_t c) {
+    const BuildingDraft& d = reading_.draft;
+    const std::string& name = columns_[c].name;
+    std::string why;
+    const auto by_header = station_place(*d.station, columns_, c, d.station_plan, why);
+    const std::string answer = answer_about(name);
+    if (!answer.empty()) {
+      const StationPlace known = place_on_floor(*d.station, columns_, c, d.station_plan);
+      const auto at = parse_station_place(answer.substr(name.size() + 1), known, d.station_plan);
+      if (!at)
+        refuse(answer, fmt::format("a place is a floor, 0 to {}, base or roof, with :x, :y or :z "
+                                   "where the header does not say the direction; or unused",
+                                   d.station_plan.stories));
+      return at;
+    }
+    if (!by_header)
+      reading_.open.push_back(
+          {"channel",
+           fmt::format(
+               "Where is {}{}? {}. Its floor (2, base, roof), with its direction where that "
+               "is not said (2:x), or unused.",
+               printable(name),
+               columns_[c].header.place.empty()
+                   ? ""
+                   : fmt::format(" ({})", printable(columns_[c].header.place)),
+               why),
+           "",
+           "",
+           {},
+           "",
+           name});
+    return by_header;
+  }
+
+  const InitAnswers& answers_;
+  InitReading& reading_;
+  const std::vector<ChannelColumn>& columns_;
+};
+
 using estimator::Structure;
 
-/// Where nobody named the channels: "base-x", "F2-Y1".
+/// Returns the default name of a channel: "base-x", "F2-Y1".
 std::string usual_name(const Structure& s, const Place& place) {
   if (place.story == 0) return place.direction == estimator::Direction::x ? "base-x" : "base-y";
   std::string frame = s.frame_name(place.frame);
@@ -21,8 +109,8 @@ std::string usual_name(const Structure& s, const Place& place) {
   return fmt::format("F{}-{}", place.story, frame);
 }
 
-/// One node for each channel; where a floor has one accelerometer for each direction, one node for
-/// each floor.
+/// Returns the LCM source: one node per floor if it has one accelerometer per direction, else one
+/// node per channel.
 std::string lcm_source(const Structure& s, const Place& place, std::size_t index) {
   const bool one_a_floor = s.n() == 1 && s.m() == 1;
   return fmt::format("{{ lcm = \"ACCEL\", node = {}, axis = \"{}\" }}",
@@ -188,6 +276,71 @@ class ChannelPlacing {
 };
 
 }  // namespace
+
+std::string ask_base(const BuildingDraft&) {
+  return "Which level is the base, whose motion drives the stories above it: ground (the first "
+         "floor) "
+         "or\nbasement?";
+}
+
+bool asks_base(const BuildingDraft& d) {
+  return d.station && d.station->ground_can_be_base && d.station->basement_can_be_base;
+}
+
+std::string understood_base(const BuildingDraft& d) {
+  return d.station_plan.base_is_basement ? "basement" : "ground";
+}
+
+std::string ask_plan(const BuildingDraft&) {
+  return "Lengths of the plan along x and y, m, such as 40x25? Sensors are said to be at its "
+         "sides.";
+}
+
+std::string understood_plan(const BuildingDraft& d) {
+  return fmt::format("{:g} m along x, {:g} m along y", d.station_plan.x_m, d.station_plan.y_m);
+}
+
+std::string ask_stories(const BuildingDraft& d) {
+  std::string out = "How many stories does it have above its base?";
+  if (d.station && d.station->highest_floor > 0)
+    out += fmt::format(" The headers name floors up to {}{}.", d.station->highest_floor,
+                       d.station->has_roof ? ", and a roof" : "");
+  return out;
+}
+
+std::string take_base(const std::string& text, BuildingDraft& d, ColumnCache&) {
+  if (text != "ground" && text != "basement") return "ground or basement";
+  d.station_plan.base_is_basement = text == "basement";
+  return "";
+}
+
+std::string initial_directions(const BuildingDraft& d) {
+  if (!d.station || d.station->along_x == d.station->along_y) return "both";
+  return d.station->along_x ? "x" : "y";
+}
+
+std::string take_plan(const std::string& text, BuildingDraft& d, ColumnCache&) {
+  const std::size_t by = text.find('x');
+  const auto x_m = drivers::parse_number(drivers::trimmed(text.substr(0, by)));
+  const auto y_m = by == std::string::npos
+                       ? std::nullopt
+                       : drivers::parse_number(drivers::trimmed(text.substr(by + 1)));
+  const auto possible = [](double length_m) { return length_m > 0 && length_m <= 1000; };
+  if (!x_m || !y_m || !possible(*x_m) || !possible(*y_m))
+    return "lengths along x and along y in m, such as 40x25";
+  d.station_plan.x_m = *x_m;
+  d.station_plan.y_m = *y_m;
+  return "";
+}
+
+bool asks_plan(const BuildingDraft& d) {
+  return d.station && ((d.station->needs_plan_x && d.plan.structure.m() < 2) ||
+                       (d.station->needs_plan_y && d.plan.structure.n() < 2));
+}
+
+void place_station(const InitAnswers& answers, InitReading& reading) {
+  StationPlacing(answers, reading).place();
+}
 
 void place_channels(const InitAnswers& answers, InitReading& reading) {
   if (reading.draft.station) return place_station(answers, reading);

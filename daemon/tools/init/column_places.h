@@ -4,11 +4,24 @@
 #include <string>
 #include <vector>
 
-#include "daemon/tools/init/place.h"
+#include "daemon/tools/init/building_plan.h"
 
 namespace framewatch::daemon {
 
-/// What "y1" in a column's title means, where it is not said otherwise.
+/// The place in a column's title, before the building is known.
+struct TitleWords {
+  std::optional<int> story;  ///< "story 2", "F2", "2nd floor"; "base": 0
+  bool is_roof = false;
+  char letter = 0;  ///< 'x' or 'y' with a number behind it, "y1"
+  int number = 0;   ///< that number
+  char along = 0;   ///< 'x' or 'y' alone
+  bool says_frame = false;
+};
+
+/// Empty when a word or number has no meaning here: such a title says no place.
+std::optional<TitleWords> title_words(const std::string& title);
+
+/// Meaning of "y1" in a column's title unless stated otherwise.
 enum class TitleReading {
   frames,      ///< the frame y1, which moves along x
   directions,  ///< the first accelerometer along y; with one a floor: along y on floor 1
@@ -18,8 +31,8 @@ enum class TitleReading {
 struct ColumnPlaces {
   /// Parallel to places_of(): index of the column; empty where no title says it.
   std::vector<std::optional<std::size_t>> column_of_place;
-  /// A column whose title is one place as a frame and another one as a direction, while both
-  /// readings fit the building; empty: there is none.
+  /// A column whose title is one place as a frame and another as a direction while both readings
+  /// fit the building, if any.
   std::optional<std::size_t> ambiguous;
   std::string as_frame, as_direction;  ///< of that column, in words
 };

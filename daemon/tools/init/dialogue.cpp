@@ -8,15 +8,26 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
-#include "daemon/tools/init/read_answers.h"
+#include "daemon/tools/init/channel_questions.h"
+#include "daemon/tools/init/questions.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {
 namespace {
 
+BuildingDraft first_draft(const InitAnswers& answers) {
+  BuildingDraft d;
+  d.record_arguments = answers.record;
+  d.plan.structure.stories = 1;
+  d.plan.structure.frames_x = {"y1",
+                               "y2"};  // default: most buildings have spans in both directions
+  d.plan.structure.frames_y = {"x1", "x2"};
+  return d;
+}
+
 constexpr const char* kChannel = "channel";
 
-/// The first lines: who answers one question needs no more of them.
+/// Returns the first three lines of a list of problems, and the number of the others.
 std::string first_lines(const std::string& text) {
   constexpr int kMax = 3;
   std::size_t at = 0;
@@ -26,7 +37,7 @@ std::string first_lines(const std::string& text) {
                      std::count(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), '\n'));
 }
 
-/// One dialogue, with what is known at each moment.
+/// One dialogue and its current state.
 class Dialogue {
  public:
   Dialogue(InitAnswers answers, std::string path, const Remarks& remarks, ColumnCache& files,
@@ -55,7 +66,7 @@ class Dialogue {
   }
 
  private:
-  /// Empty when the person leaves.
+  /// Returns nullopt if the person leaves.
   std::string line() {
     terminal_.say("> ");
     const auto text = terminal_.read_line();
@@ -161,12 +172,13 @@ class Dialogue {
     const std::string answer = line();
     if (answer.empty()) return;
     const std::size_t equals = answer.rfind('=');
-    std::erase_if(answers_.channels, [&](const std::string& other) {  // of this column or place
-      const std::size_t at = other.rfind('=');
-      return equals != std::string::npos && at != std::string::npos &&
-             (other.substr(0, at) == answer.substr(0, equals) ||
-              other.substr(at) == answer.substr(equals));
-    });
+    std::erase_if(answers_.channels,
+                  [&](const std::string& other) {  // answers about the same column or place
+                    const std::size_t at = other.rfind('=');
+                    return equals != std::string::npos && at != std::string::npos &&
+                           (other.substr(0, at) == answer.substr(0, equals) ||
+                            other.substr(at) == answer.substr(equals));
+                  });
     answers_.channels.push_back(answer);
   }
 
@@ -175,14 +187,43 @@ class Dialogue {
   const Remarks& remarks_;
   ColumnCache& files_;
   const Terminal& terminal_;
-  std::vector<std::string> history_;           ///< options, as they were answered
-  std::map<std::string, std::string> before_;  ///< answers that are being changed
+  std::vector<std::string> history_;           ///< options in the order of the answers
+  std::map<std::string, std::string> before_;  ///< previous values of answers being changed
   std::vector<std::string> told_;
-  std::string asked_;  ///< last
+  std::string asked_;  ///< the last question
   bool left_ = false;
 };
 
 }  // namespace
+
+InitReading read_answers(const InitAnswers& answers, bool take_defaults, ColumnCache& files) {
+  InitReading out;
+  out.draft = first_draft(answers);
+  BuildingDraft& d = out.draft;
+  for (const InitQuestion& question : init_questions()) {
+    const auto answer = answers.by_option.find(question.option);
+    const bool answered = answer != answers.by_option.end();
+    if (!question.applies(d)) {
+      if (answered && take_defaults)
+        out.open.push_back({question.option, "", "", "does not apply with the other answers", {}});
+      continue;
+    }
+    const std::string initial = question.initial(d);
+    if (!answered && (initial.empty() || !take_defaults)) {
+      out.open.push_back({question.option, question.ask(d), initial, "", {}});
+      if (!take_defaults) return out;
+      continue;
+    }
+    const std::string problem = question.take(answered ? answer->second : initial, d, files);
+    if (!problem.empty())
+      out.open.push_back({question.option, question.ask(d), initial, problem, {}});
+    else if (out.open.empty())
+      out.understood.push_back({question.option, question.title, question.understood(d)});
+    if (!take_defaults && !out.open.empty()) return out;
+  }
+  if (out.open.empty()) place_channels(answers, out);
+  return out;
+}
 
 std::string summary_text(const InitReading& reading) {
   std::string out;

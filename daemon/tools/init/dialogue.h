@@ -8,13 +8,17 @@
 
 namespace framewatch::daemon {
 
-/// Where a person answers.
+/// Takes the answers one after the other, each judged by those before it. `take_defaults`: what is
+/// not answered and has a default is not open. The plan is whole when nothing is open.
+InitReading read_answers(const InitAnswers& answers, bool take_defaults, ColumnCache& files);
+
+/// The terminal where a person answers.
 struct Terminal {
   std::function<std::optional<std::string>()> read_line;  ///< empty: there is no more
   std::function<void(const std::string&)> say;
 };
 
-/// What is to be said about a building that is all answered; empty: nothing.
+/// Returns remarks about a completely described building, or an empty text.
 using Remarks = std::function<std::string(const BuildingPlan&)>;
 
 /// Asks what is open, question by question, until the person agrees with what was understood; every

@@ -14,7 +14,7 @@
 
 namespace framewatch::daemon {
 
-/// What was answered, as it was typed: by option or in the dialogue.
+/// The answers as typed, by option or in the dialogue.
 struct InitAnswers {
   std::map<std::string, std::string, std::less<>> by_option;  ///< "stories": "3"; files of
                                                               ///< "record" stand one a line
@@ -41,27 +41,27 @@ struct BuildingDraft {
   RecordFileArguments record_arguments;
   std::string live;                    ///< "lcm", "can" or "none"
   std::vector<ChannelColumn> columns;  ///< that a person named
-  std::vector<std::string> notes;      ///< to be told once
+  std::vector<std::string> notes;      ///< notes to print once
   std::vector<double> mass;            ///< as answered
   std::string mass_unit;               ///< kg, t, kg/m2
   std::optional<double> area_m2;
   std::optional<TitleReading> reading;    ///< of the columns' titles
-  std::optional<StationReading> station;  ///< what headers of a network's files say
+  std::optional<StationReading> station;  ///< content of the headers of a network's files
   StationPlan station_plan;
 };
 
-/// What is still to be answered, or was answered wrongly.
+/// A question without a valid answer.
 struct OpenQuestion {
   std::string option;  ///< "stories"; "channel": the place stands in `ask`
   std::string ask;
-  std::string initial;         ///< what an empty answer means; empty: it must be answered
-  std::string problem;         ///< why the answer does not serve; empty: there is none yet
-  std::optional<Place> place;  ///< of a channel: which column is there?
-  std::string answer = {};     ///< of a channel: the one that does not serve
-  std::string column = {};     ///< of a station: where is this one?
+  std::string initial;         ///< meaning of an empty answer; empty if an answer is required
+  std::string problem;         ///< why the answer is invalid; empty without an answer
+  std::optional<Place> place;  ///< set if the question is about the column of this place
+  std::string answer = {};     ///< for a channel: its invalid answer
+  std::string column = {};     ///< for a station: the column whose place is asked
 };
 
-/// An answer as the summary shows it.
+/// An answer in the summary.
 struct UnderstoodAnswer {
   std::string option, title, text;
 };

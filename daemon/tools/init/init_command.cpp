@@ -16,7 +16,6 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/tools/init/building_toml.h"
 #include "daemon/tools/init/dialogue.h"
-#include "daemon/tools/init/read_answers.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/files/text_output.h"
@@ -37,7 +36,7 @@ Terminal terminal() {
           [](const std::string& text) { fmt::print(stderr, "{}", text); }};
 }
 
-/// What `framewatch check` would object to, and what it would doubt.
+/// Problems and warnings of `framewatch check`.
 struct Judgement {
   std::vector<ConfigProblem> problems, doubts;
 };

@@ -9,12 +9,12 @@ namespace framewatch::daemon {
 struct InitArguments {
   InitAnswers answers;
   std::string out = "building.toml";
-  bool force = false;  ///< write over a file that is there
+  bool force = false;  ///< overwrite an existing file
   bool quiet = false;
 };
 
-/// framewatch init: a configuration from answers, given as options or asked for on a terminal. Exit
-/// status: 0 written, 2 not, with everything that is missing or wrong.
+/// Runs `framewatch init`: writes a configuration from answers, given as options or on a terminal.
+/// Exit status: 0 written, 2 not written; everything missing or wrong is listed.
 int init(const InitArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -7,8 +7,7 @@
 
 #include "daemon/base/printable.h"
 #include "daemon/tools/init/answer_text.h"
-#include "daemon/tools/init/start_question.h"
-#include "daemon/tools/init/station_answers.h"
+#include "daemon/tools/init/channel_questions.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {
@@ -16,7 +15,7 @@ namespace {
 
 using Draft = BuildingDraft;
 
-constexpr int kMaxStories = 200;  ///< no building has so many
+constexpr int kMaxStories = 200;  ///< no building has more
 
 bool always(const Draft&) {
   return true;
@@ -148,7 +147,7 @@ std::string understood_bays(const Draft& d) {
   return out;
 }
 
-/// Positive numbers in m, one or `count`.
+/// Parses positive numbers in m: one or `count`.
 std::string take_lengths(const std::string& text, int count, bool count_known,
                          std::vector<double>& out) {
   const auto quantity = parse_quantity(text);
@@ -187,7 +186,7 @@ std::string take_floors(const std::string& text, Draft& d, ColumnCache&) {
   return "";
 }
 
-/// kg; the floors' when the area is known.
+/// Returns masses in kg: of the floors if they are given in kg/m2 and the area is known.
 std::vector<double> floor_masses(const Draft& d) {
   double factor = 1;
   if (d.mass_unit == "t") factor = 1000;
@@ -213,7 +212,7 @@ std::string take_mass(const std::string& text, Draft& d, ColumnCache&) {
   if (quantity->unit == "kg/m^2") quantity->unit = "kg/m2";
   if (quantity->unit.empty()) quantity->unit = "kg";
   if (quantity->unit != "kg" && quantity->unit != "t" && quantity->unit != "kg/m2")
-    return fmt::format("{} is no unit of it: kg, t or kg/m2", quantity->unit);
+    return fmt::format("unknown unit {}: use kg, t or kg/m2", quantity->unit);
   d.mass_unit = quantity->unit;
   d.area_m2 = floor_area_m2(d.plan.structure) > 0 ? std::optional(floor_area_m2(d.plan.structure))
                                                   : std::nullopt;
@@ -252,7 +251,7 @@ std::string fixed(const Draft&) {
   return Text;
 }
 
-// Questions and defaults that do not depend on what was answered before.
+// Questions and defaults that do not depend on earlier answers.
 constexpr char kAskRecord[] =
     "A record of its accelerometers (CSV and the like), from whose header the channels come? A "
     "file's\nname, behind it what the file does not say (my.csv --unit g), or none";

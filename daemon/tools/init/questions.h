@@ -7,19 +7,19 @@
 
 namespace framewatch::daemon {
 
-/// One question about the building, in the dialogue and as an option of the command.
+/// A question about the building, in the dialogue and as an option of the command.
 struct InitQuestion {
   const char* option;
-  const char* title;  ///< in the summary
+  const char* title;  ///< title in the summary
   std::string (*ask)(const BuildingDraft&);
   bool (*applies)(const BuildingDraft&);
-  std::string (*initial)(const BuildingDraft&);  ///< default; empty: it must be answered
-  /// Why the text is no answer; empty: it was taken.
+  std::string (*initial)(const BuildingDraft&);  ///< default; empty if an answer is required
+  /// Stores the answer. Returns why it is invalid, or an empty text.
   std::string (*take)(const std::string& text, BuildingDraft&, ColumnCache&);
-  std::string (*understood)(const BuildingDraft&);  ///< what it was taken for
+  std::string (*understood)(const BuildingDraft&);  ///< text of the understood answer
 };
 
-/// In the order in which they are asked: each knows the answers before it.
+/// Returns the questions in the order of the dialogue. Each may use the answers before it.
 std::span<const InitQuestion> init_questions();
 
 }  // namespace framewatch::daemon

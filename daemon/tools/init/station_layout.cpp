@@ -18,21 +18,22 @@ using drivers::LevelKind;
 using drivers::Side;
 
 constexpr double kRadians = M_PI / 180;
-constexpr double kMeridian_m = 111'195;  ///< of a degree of latitude
-/// Sensors of one building are not farther apart; coordinates of the station are no places.
+constexpr double kMeridian_m = 111'195;  ///< length of a degree of latitude
+/// Sensors of one building are not farther apart; larger coordinates are the station's.
 constexpr double kFarthest_m = 1000;
 
-/// Within the building, in which every floor has the same axes.
+/// True for levels within the building, where every floor has the same axes.
 bool is_inside(const Level& level) {
   return level.kind != LevelKind::outside && level.kind != LevelKind::unknown;
 }
 
-/// Of the direction nearest to north, of this or its perpendicular: -45 to 45 deg.
+/// Returns the azimuth, of this direction or its perpendicular, that is nearest to north: -45 to 45
+/// deg.
 double folded_deg(double azimuth_deg) {
   return std::remainder(azimuth_deg, 90);
 }
 
-/// The one most channels have; axes are horizontal directions.
+/// Returns the most frequent azimuth of horizontal directions.
 std::optional<double> azimuth_of_y(const std::vector<ChannelColumn>& columns,
                                    const std::vector<Level>& levels) {
   std::map<double, int> count;
@@ -48,7 +49,7 @@ bool is_along_y(double azimuth_deg, double azimuth_y_deg) {
   return std::abs(std::cos((azimuth_deg - azimuth_y_deg) * kRadians)) > std::sqrt(0.5);
 }
 
-/// Metres east and north of the station's reference, or of the first sensor; empty: not said.
+/// Returns meters east and north of the station's reference or the first sensor, or nullopt.
 struct Offset {
   double east_m = 0, north_m = 0;
 };
@@ -62,8 +63,8 @@ std::optional<Offset> offset_of(const AxisHeader& header, const AxisHeader& firs
   return Offset{east_m, north_m};
 }
 
-/// Places in metres: only where every horizontal channel of the building has one and they are not
-/// all the same, which are then the station's own coordinates. Along x and y, from the least.
+/// Sets places in m along x and y from the least. Needs a place for every horizontal channel; equal
+/// places are the station's coordinates and are ignored.
 std::vector<std::optional<std::pair<double, double>>> places_m(
     const StationReading& reading, const std::vector<ChannelColumn>& columns) {
   std::vector<std::optional<std::pair<double, double>>> out(columns.size());
@@ -91,7 +92,7 @@ std::vector<std::optional<std::pair<double, double>>> places_m(
   return out;
 }
 
-/// -1, 0 or 1 along the plan's x and y.
+/// Returns -1, 0 or 1 along the plan's x and y.
 std::pair<int, int> along_plan(const Side& side, double azimuth_y_deg) {
   const double angle = azimuth_y_deg * kRadians;
   const double x = side.east * std::cos(angle) - side.north * std::sin(angle);
@@ -100,7 +101,7 @@ std::pair<int, int> along_plan(const Side& side, double azimuth_y_deg) {
   return {sign(x), sign(y)};
 }
 
-/// Of a level; empty where this building does not have it, or it is none of it.
+/// Returns the story of a level, or nullopt if this building does not have the level.
 std::optional<int> story_of(const Level& level, const StationPlan& plan) {
   switch (level.kind) {
     case LevelKind::roof:
@@ -144,7 +145,8 @@ std::optional<StationReading> read_station(const std::vector<ChannelColumn>& col
   if (!azimuth_y_deg) return std::nullopt;
   out.azimuth_y_deg = *azimuth_y_deg;
   const auto metres = places_m(out, columns);
-  std::map<LevelKind, std::map<char, int>> lowest;  // of the first floor and the basement
+  std::map<LevelKind, std::map<char, int>>
+      lowest;  // lowest levels of the first floor and the basement
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const Level& level = out.levels[c];
     const auto along = letter_of(columns[c].header, out.azimuth_y_deg);

@@ -4,9 +4,12 @@
 #include <numbers>
 #include <utility>
 
-#include "daemon/base/median.h"
+#include "daemon/base/numbers.h"
 #include "daemon/tools/lab/accuracy_trial.h"
 #include "daemon/tools/lab/study_buildings.h"
+#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/paper_method.h"
+#include "daemon/tools/lab/random_building.h"
 #include "estimator/identify/solve/batch_least_squares.h"
 #include "estimator/refine/max_likelihood.h"
 #include "estimator/simulate/linear_response.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "daemon/tools/simulation/recorded_motion.h"
+#include "daemon/tools/simulation/scenario_motion.h"
 #include "drivers/formats/record_file.h"
 #include "drivers/records/record_builder.h"
 

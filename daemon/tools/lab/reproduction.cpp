@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/percent.h"
+#include "daemon/base/numbers.h"
 #include "daemon/tools/lab/data_files.h"
 #include "daemon/tools/lab/study_buildings.h"
 #include "estimator/identify/solve/batch_least_squares.h"

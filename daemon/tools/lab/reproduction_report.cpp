@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/html_page.h"
-#include "daemon/base/percent.h"
+#include "daemon/base/numbers.h"
 #include "daemon/tools/lab/reproduction_plots.h"
 #include "daemon/tools/lab/reproduction_sections.h"
 

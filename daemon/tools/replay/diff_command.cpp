@@ -13,7 +13,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/base/json_text.h"
+#include "daemon/base/json.h"
 #include "daemon/base/printable.h"
 #include "daemon/monitor/estimates/estimate_diff.h"
 #include "drivers/files/input_file.h"

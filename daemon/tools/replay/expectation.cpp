@@ -7,12 +7,12 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/html_text.h"
-#include "daemon/base/json_text.h"
+#include "daemon/base/printable.h"
+#include "daemon/base/json.h"
 #include "daemon/base/toml_document.h"
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"
-#include "daemon/config/toml_file.h"
+#include "daemon/config/sections/config_problems.h"
 
 namespace framewatch::daemon {
 namespace {

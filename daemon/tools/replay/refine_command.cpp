@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/config/sections/config_problems.h"

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/base/json_text.h"
+#include "daemon/base/json.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "drivers/lcm/accel_codec.h"

@@ -19,7 +19,7 @@
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
-#include "daemon/config/baseline_file.h"
+#include "daemon/config/learned_files.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/estimates/estimate_output.h"
 #include "daemon/monitor/estimation/state_file.h"

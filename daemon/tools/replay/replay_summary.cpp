@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/json_text.h"
+#include "daemon/base/json.h"
 #include "daemon/monitor/estimates/estimate_table.h"
 
 namespace framewatch::daemon {

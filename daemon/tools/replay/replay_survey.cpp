@@ -10,8 +10,8 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/median.h"
-#include "daemon/config/axis_names.h"
+#include "daemon/base/numbers.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/config/header_differences.h"
 #include "drivers/can/can_log.h"
 #include "drivers/files/input_file.h"

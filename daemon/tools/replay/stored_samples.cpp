@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/config/axis_names.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/tools/replay/counts_intake.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/can/can_log.h"

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/base/json_values.h"
+#include "daemon/base/json.h"
 #include "daemon/base/utc_time.h"
 
 namespace framewatch::daemon {

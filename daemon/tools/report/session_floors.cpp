@@ -6,8 +6,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/json_values.h"
-#include "daemon/base/median.h"
+#include "daemon/base/json.h"
+#include "daemon/base/numbers.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "estimator/identify/elements/guessed_design.h"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/html_page.h"
-#include "daemon/base/number_words.h"
+#include "daemon/base/numbers.h"
 #include "daemon/base/svg_plot.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/estimates/parameter_summary.h"

@@ -16,11 +16,11 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/child_process.h"
 #include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
 #include "daemon/base/log.h"
-#include "daemon/base/stop_signal.h"
+#include "daemon/base/process.h"
+#include "daemon/base/signals.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "daemon/tools/session/recorder.h"

@@ -10,7 +10,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/estimation/publisher.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/live/live_intake.h"

@@ -8,7 +8,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/random_id.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/service/command_client.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
+#include <Eigen/Core>
 
 #include "daemon/base/file_digest.h"
 #include "daemon/base/toml_document.h"
@@ -14,19 +17,169 @@
 #include "daemon/config/read_config.h"
 #include "daemon/config/sections/effects.h"
 #include "daemon/tools/simulation/scenario_motion.h"
-#include "daemon/tools/simulation/scenario_sensors.h"
-#include "daemon/tools/simulation/scenario_truth.h"
-#include "daemon/tools/simulation/simulation_size.h"
+#include "daemon/tools/simulation/simulation.h"
 #include "drivers/files/standard_streams.h"
 #include "estimator/simulate/building_model.h"
+#include "estimator/structure/natural_frequencies.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kMaxChanged = 1e7;  // every change has a value of every parameter
+constexpr double kStandardGravity = 9.80665;
+/// A delay needs a filter that is longer by the delay at both ends.
+constexpr double kLongestDelay_s = 1;
+
+/// Replaces values of `model` by the given keys.
+void read_sensor(ConfigSection& s, estimator::SensorModel& model, double& noise_ratio) {
+  const auto take = [&](const char* key, double& value, double factor = 1) {
+    if (s.given(key)) value = factor * s.number(key);
+  };
+  take("noise_mps2_per_rthz", model.noise_density);
+  take("noise_ratio", noise_ratio);
+  take("bias_mps2", model.bias);
+  take("ramp_mps3", model.thermal_ramp);
+  take("full_scale_g", model.full_scale, kStandardGravity);
+  if (s.given("bits")) model.bits = s.integer("bits");
+  take("loss_ratio", model.loss_ratio);
+  take("dead_from_s", model.dead_from_s);
+  take("dead_to_s", model.dead_to_s);
+  for (const std::string& rule : problems(model)) s.problem("", rule);
+}
+
+/// Returns only those errors of all sensors that have no unit of acceleration.
+estimator::SensorModel of_force(const estimator::SensorModel& common) {
+  estimator::SensorModel out;
+  out.loss_ratio = common.loss_ratio;
+  return out;
+}
+
+void refuse_acceleration(ConfigSection& s) {
+  for (const char* key : {"noise_mps2_per_rthz", "bias_mps2", "ramp_mps3", "full_scale_g", "bits"})
+    if (s.given(key))
+      s.problem(key,
+                "is of an accelerometer; a channel of a force has noise_ratio, loss_ratio, "
+                "dead_from_s and dead_to_s");
+}
+
+/// Reads [sensors] (null if absent) for every axis of scenario.config and the [[sensor]] tables for
+/// the channels they name. Sets scenario.sensors and scenario.noise_ratio.
+void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& single,
+                  Scenario& scenario, std::vector<TextProblem>& problems) {
+  estimator::SensorModel common;
+  double common_ratio = 0;
+  ConfigSection section("sensors", "sensors", all, {1, 1}, problems);
+  read_sensor(section, common, common_ratio);
+  // Empty if the building has problems; then its channels are unknown.
+  const std::vector<estimator::SensorAxis>& axes = scenario.config.pipeline.axes;
+  scenario.sensors.assign(axes.size(), common);
+  scenario.noise_ratio.assign(axes.size(), common_ratio);
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (axes[a].is_force) scenario.sensors[a] = of_force(common);
+  for (const TomlValue* table : single) {
+    ConfigSection one("sensor", "sensor", table, {}, problems);
+    const std::string name = one.text("channel");
+    const auto at = std::find_if(axes.begin(), axes.end(),
+                                 [&](const estimator::SensorAxis& a) { return a.name == name; });
+    if (at != axes.end()) {
+      const auto index = static_cast<std::size_t>(at - axes.begin());
+      read_sensor(one, scenario.sensors[index], scenario.noise_ratio[index]);
+      if (axes[index].is_force) refuse_acceleration(one);
+      continue;
+    }
+    if (!axes.empty() && one.given("channel"))
+      one.problem("channel", fmt::format("no channel is named \"{}\"", name));
+    estimator::SensorModel nobody;
+    double ratio = 0;
+    read_sensor(one, nobody, ratio);
+  }
+  for (const estimator::SensorAxis& axis : axes)
+    if (std::abs(axis.delay) > kLongestDelay_s)
+      problems.push_back({{},
+                          fmt::format("channel \"{}\": a delay_s beyond {:g} s is not simulated",
+                                      axis.name, kLongestDelay_s)});
+}
+
+class TruthReader {
+ public:
+  TruthReader(const estimator::Structure& structure, const Eigen::VectorXd& design,
+              ConfigSection& section)
+      : structure_(structure), table_(structure), section_(section), theta_(design) {}
+
+  Eigen::VectorXd read() {
+    const bool has_design = theta_.size() == table_.size();
+    if (!has_design) theta_ = Eigen::VectorXd::Zero(table_.size());
+    const bool kx = frames("kx_npm", 0, structure_.n(), 0);
+    const bool ky = frames("ky_npm", structure_.n(), structure_.m(), 0);
+    const bool gk = panels("gk", 0);
+    if (!has_design) {
+      require(kx || structure_.n() == 0, "kx_npm");
+      require(ky || structure_.m() == 0, "ky_npm");
+      require(gk || structure_.panels() == 0, "gk");
+    }
+    const bool stiffness_known =
+        table_.elements() > 0 && theta_.head(table_.elements()).minCoeff() > 0;
+    if (stiffness_known && (kx || ky || gk || section_.given("damping_ratio") || !has_design))
+      theta_ =
+          with_proportional_damping(structure_, table_, theta_, section_.number("damping_ratio"));
+    frames("cx_nspm", 0, structure_.n(), table_.elements());
+    frames("cy_nspm", structure_.n(), structure_.m(), table_.elements());
+    panels("gc", table_.elements());
+    return theta_;
+  }
+
+ private:
+  bool frames(const char* key, int first, int count, int offset) {
+    if (!section_.given(key)) return false;
+    const std::vector<double> grid = section_.grid(key, {structure_.stories, count});
+    if (grid.empty()) return false;
+    for (int story = 1; story <= structure_.stories; ++story)
+      for (int f = 0; f < count; ++f)
+        theta_[table_.frame_stiffness(story, first + f) + offset] =
+            grid[static_cast<std::size_t>((story - 1) * count + f)];
+    return true;
+  }
+
+  bool panels(const char* key, int offset) {
+    if (!section_.given(key)) return false;
+    if (structure_.panels() == 0) {
+      section_.problem(key, "this building has no floor panels");
+      return false;
+    }
+    const std::vector<double> grid =
+        section_.grid(key, {structure_.stories, structure_.n() - 1, structure_.m() - 1});
+    if (grid.empty()) return false;
+    for (int story = 1; story <= structure_.stories; ++story)
+      for (int p = 0; p < structure_.panels(); ++p)
+        theta_[table_.panel_stiffness(story, p) + offset] =
+            grid[static_cast<std::size_t>((story - 1) * structure_.panels() + p)];
+    return true;
+  }
+
+  void require(bool holds, const char* key) {
+    if (!holds && section_.good(key))
+      section_.problem(key,
+                       "is missing, and the building has no [structure.design] to take it from");
+  }
+
+  const estimator::Structure& structure_;
+  estimator::ParameterTable table_;
+  ConfigSection& section_;
+  Eigen::VectorXd theta_;
+};
+
+/// Returns the true parameters of the virtual building in table order, SI, from [truth] or else the
+/// design (which may be empty). Missing damping is proportional to the stiffness.
+Eigen::VectorXd read_truth(ConfigSection& section, const estimator::Structure& structure,
+                           const Eigen::VectorXd& design) {
+  return TruthReader(structure, design, section).read();
+}
+
+constexpr double kMaxChanged = 1e7;  // values; every change stores all parameters
 constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change", "effect"};
 
-/// The file in three parts: top keys, sections of the scenario, the rest (the building).
+/// The three parts of the file: top keys, sections of the scenario, the building.
 struct Parts {
   TomlValue top;
   TomlValue sections;
@@ -177,7 +330,7 @@ class ScenarioReader {
   Parts parts_;
   std::string path_;
   std::string sha256_;
-  const Config* building_;  ///< null: the file's own
+  const Config* building_;  ///< null for the building in the file
   std::vector<ConfigProblem>& out_;
   std::vector<TextProblem> problems_;
 };

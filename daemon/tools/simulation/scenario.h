@@ -16,8 +16,8 @@ namespace framewatch::daemon {
 std::optional<Scenario> load_scenario(const std::string& path,
                                       std::vector<ConfigProblem>& problems);
 
-/// The same from a text; `path` only names it and gives relative paths their start. `building`, if
-/// any, stands for the file that the key config names.
+/// Parses a scenario from a text. `path` is its name in messages and the start of relative paths.
+/// `building`, if given, replaces the file of the key config.
 std::optional<Scenario> read_scenario(const std::string& text, const std::string& path,
                                       std::vector<ConfigProblem>& problems,
                                       const Config* building = nullptr);

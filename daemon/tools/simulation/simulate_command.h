@@ -6,18 +6,18 @@ namespace framewatch::daemon {
 
 struct SimulateArguments {
   std::string scenario;
-  std::string out;            ///< .csv, .csv.gz or .lcmlog; empty: no file
-  std::string truth;          ///< JSON of what is hidden; empty: none
+  std::string out;            ///< .csv, .csv.gz or .lcmlog; empty for no file
+  std::string truth;          ///< JSON file of the true values; empty for none
   bool lcm = false;           ///< publish live
-  std::string lcm_url;        ///< empty: the configuration's
+  std::string lcm_url;        ///< empty for the configuration's
   bool can = false;           ///< send CAN frames
-  std::string can_interface;  ///< empty: the configuration's
-  double speed = 1;           ///< of the live stream, times real time
-  double seconds = -1;        ///< instead of the scenario's duration when > 0
+  std::string can_interface;  ///< empty for the configuration's
+  double speed = 1;           ///< speed of the live stream as a multiple of real time
+  double seconds = -1;        ///< replaces the scenario's duration if > 0
   bool quiet = false;
 };
 
-/// framewatch simulate. Exit code.
+/// Runs `framewatch simulate`. Returns the exit code.
 int simulate(const SimulateArguments& arguments);
 
 }  // namespace framewatch::daemon

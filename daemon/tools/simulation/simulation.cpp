@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
+#include "daemon/config/config_size.h"
+
 namespace framewatch::daemon {
 namespace {
+
+constexpr double kMaxInstants = 1e9;  // 116 days at 100 Hz
 
 estimator::ResponseStream response_of(const Scenario& s) {
   const estimator::Structure& structure = s.config.pipeline.structure;
@@ -19,7 +25,7 @@ estimator::ResponseStream response_of(const Scenario& s) {
           channels,  s.effects};
 }
 
-/// The sensors with their noise ratios turned into densities, which takes a run ahead.
+/// Converts the sensors' noise ratios to densities, by a run in advance.
 std::vector<estimator::SensorModel> sensors_of(const Scenario& s) {
   std::vector<estimator::SensorModel> models = s.sensors;
   estimator::ChannelEffects(s.effects).limit(models);
@@ -40,6 +46,15 @@ std::vector<estimator::SensorModel> sensors_of(const Scenario& s) {
 }
 
 }  // namespace
+
+std::string size_problem(const Scenario& s) {
+  const double instants = s.duration_s * s.rate_hz;
+  if (!(instants <= kMaxInstants))
+    return fmt::format(
+        "duration: {:g} s at {:g} Hz are {:.3g} instants, at most {:g} are simulated", s.duration_s,
+        s.rate_hz, instants, kMaxInstants);
+  return simulated_size_problem(s.config.pipeline.structure);
+}
 
 Simulation::Simulation(const Scenario& s)
     : response_(response_of(s)),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,31 +13,30 @@
 
 namespace framewatch::daemon {
 
-/// A virtual test: the building and sensors as configured, the true parameters, the ground motion,
-/// and the changes.
+/// A virtual test: configured building and sensors, true parameters, ground motion and changes.
 struct Scenario {
   Config config;
   Eigen::VectorXd truth;  ///< table order, SI
   estimator::PlanMotion motion;
   std::vector<estimator::ParameterChange> changes;
-  std::vector<estimator::Effect> effects;       ///< those of config and the scenario's own
+  std::vector<estimator::Effect> effects;       ///< effects of config and of the scenario
   std::vector<estimator::SensorModel> sensors;  ///< parallel to config.pipeline.axes
-  std::vector<double> noise_ratio;  ///< of the axis' rms over the test, beside sensors' density
+  std::vector<double> noise_ratio;  ///< noise relative to the axis' rms, in addition to `sensors`
   double rate_hz = 100;
   double duration_s = 0;
   std::uint64_t seed = 1;
 };
 
-/// Computes what the sensors of a scenario measure, instant after instant from time 0.
+/// Computes the measurements of a scenario's sensors, instant by instant from time 0.
 class Simulation {
  public:
   explicit Simulation(const Scenario& scenario);
 
-  /// Raw values in axis order, NaN where lost.
+  /// Returns the raw values in axis order, NaN for lost samples.
   const std::vector<double>& next();
-  /// Whether the motion that next() returned last has diverged, as a softening law can make it.
+  /// Returns true if the last motion of next() has diverged, which a softening law can cause.
   bool collapsed() const { return collapsed_; }
-  /// Time of the instant that next() returned last, s.
+  /// Returns the time of the last instant of next(), s.
   double time_s() const { return response_.time_s(); }
 
  private:
@@ -46,7 +46,11 @@ class Simulation {
   bool collapsed_ = false;
 };
 
-/// Instants in the scenario's duration, both ends included.
+/// Returns the number of instants in the scenario's duration, both ends included.
 std::int64_t instants(const Scenario& scenario);
+
+/// Returns why a scenario is too long or its building too large to simulate, or an empty text.
+/// Checks before allocating anything that large.
+std::string size_problem(const Scenario& scenario);
 
 }  // namespace framewatch::daemon

@@ -1,33 +1,42 @@
 #pragma once
 
+#include <lcm/lcm-cpp.hpp>
+
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <lcm/lcm-cpp.hpp>
 
 #include "daemon/tools/simulation/simulation.h"
 
 namespace framewatch::daemon {
 
-/// Stores or sends the instants of a virtual test, one after the other.
+/// Stores or sends the instants of a virtual test.
 class SimulationOutput {
  public:
   virtual ~SimulationOutput() = default;
-  /// False when it cannot be stored or sent; error() says why, here and below.
+  /// Stores or sends one instant. Returns false on failure, as finishing does; error() has the
+  /// reason.
   [[nodiscard]] virtual bool put(double time_s, const std::vector<double>& raw) = 0;
-  /// A file gets its final name only here.
+  /// Finishes the output. A file gets its final name here.
   [[nodiscard]] virtual bool close() = 0;
   virtual std::string error() const = 0;
 };
 
-/// By the name's end: .csv, .csv.gz or .lcmlog. Null, and the reason, when it cannot be made.
+/// Creates the file type of the name's ending: .csv, .csv.gz or .lcmlog. Returns null and sets the
+/// error on failure.
 std::unique_ptr<SimulationOutput> file_output(const Scenario& scenario, const std::string& path,
                                               std::string& error);
 
-/// LCM, at `speed` times real time from the first instant on; sensor time is the host's clock then
-/// plus the test's time. `lcm` must outlive it.
+/// Returns an output to LCM at `speed` times real time. Sensor time is the host's clock at the
+/// first instant plus the test's time. `lcm` must outlive the output.
 std::unique_ptr<SimulationOutput> live_output(const Scenario& scenario, lcm::LCM& lcm,
                                               double speed);
+
+/// Returns an output that sends the frames of the configured CAN nodes at `speed` times real time,
+/// with SYNC for nodes that need it. The bus's bit rate spaces its frames. `interface` replaces the
+/// configured one if there is one bus. Frames are lost while an interface is down. Returns null and
+/// sets the error if one cannot be opened. `scenario` must outlive the output.
+std::unique_ptr<SimulationOutput> can_output(const Scenario& scenario, const std::string& interface,
+                                             double speed, std::string& error);
 
 }  // namespace framewatch::daemon

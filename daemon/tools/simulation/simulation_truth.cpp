@@ -5,12 +5,38 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/config/axis_names.h"
-#include "daemon/tools/simulation/effect_json.h"
+#include "daemon/config/channel_addresses.h"
 #include "estimator/structure/parameter_table.h"
+#include "estimator/structure/place_names.h"
 
 namespace framewatch::daemon {
 namespace {
+
+const char* kind_text(const estimator::EffectPlace& p,
+                      const std::vector<estimator::SensorAxis>& axes) {
+  switch (p.kind) {
+    case estimator::PlaceKind::frame:
+      return "frame";
+    case estimator::PlaceKind::panel:
+      return "panel";
+    case estimator::PlaceKind::node:
+    case estimator::PlaceKind::node_pair:
+    case estimator::PlaceKind::crossing:
+      return "node";
+    case estimator::PlaceKind::floor:
+      return "floor";
+    case estimator::PlaceKind::building:
+      return "building";
+    case estimator::PlaceKind::whole_frame:
+      return "whole_frame";
+    case estimator::PlaceKind::mode:
+      return "mode";
+    case estimator::PlaceKind::channel:
+    case estimator::PlaceKind::channel_pair:
+      return axes[static_cast<std::size_t>(p.channel)].story > 0 ? "channel" : "base";
+  }
+  return "";
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -27,7 +53,7 @@ Json frames(const estimator::Structure& s, const Eigen::VectorXd& theta, int fir
   return out;
 }
 
-/// [story][x span][y span].
+/// Returns a grid [story][x span][y span].
 Json panels(const estimator::Structure& s, const Eigen::VectorXd& theta, int offset) {
   const estimator::ParameterTable table(s);
   Json out = Json::array();
@@ -44,7 +70,7 @@ Json panels(const estimator::Structure& s, const Eigen::VectorXd& theta, int off
   return out;
 }
 
-/// [story][x line][y line].
+/// Returns a grid [story][x line][y line].
 Json masses(const estimator::Structure& s) {
   const int rows = std::max(s.n(), 1);
   const int columns = std::max(s.m(), 1);
@@ -83,7 +109,7 @@ Json true_parameters(const Scenario& scenario) {
            "node_mass[story][x line][y line]"}};
 }
 
-/// The sensor that rides where the effect is, if it is at one.
+/// Returns the sensor at the place of the effect, if any.
 std::string nearest_channel(const estimator::EffectPlace& p,
                             const std::vector<estimator::SensorAxis>& axes) {
   for (const estimator::SensorAxis& axis : axes)
@@ -104,6 +130,35 @@ Json effect_json(const estimator::Effect& e, const Scenario& scenario) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json location_json(const estimator::EffectPlace& p, const estimator::Structure& s,
+                                     const std::vector<estimator::SensorAxis>& axes) {
+  nlohmann::ordered_json out{{"kind", kind_text(p, axes)}};
+  const auto add_channel = [&](const char* key, int channel) {
+    out[key] = axes[static_cast<std::size_t>(channel)].name;
+  };
+  if (p.kind == estimator::PlaceKind::building) out["direction"] = letter(p.direction);
+  if (p.frame >= 0) out["direction"] = letter(s.direction(p.frame));
+  if (p.channel >= 0) out["direction"] = letter(axes[static_cast<std::size_t>(p.channel)]);
+  if (p.story > 0) out["story"] = p.story;
+  if (p.frame >= 0) out["frame"] = s.frame_name(p.frame);
+  if (p.panel >= 0) out["panel"] = panel_name(s, p.panel);
+  if (p.crossing >= 0) out["node"] = crossing_name(s, p.crossing);
+  if (p.kind == estimator::PlaceKind::node_pair) out["to_story"] = p.to_story;
+  if (p.mode > 0) out["mode"] = p.mode;
+  if (p.channel >= 0) add_channel("channel", p.channel);
+  if (p.with_channel >= 0) add_channel("with_channel", p.with_channel);
+  return out;
+}
+
+nlohmann::ordered_json parameters_json(const estimator::Effect& effect) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::object();
+  const auto& parameters = describe(effect.kind).parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    out[std::string(parameters[i].key)] = {{"value", effect.values[i]},
+                                           {"unit", std::string(parameters[i].unit)}};
+  return out;
+}
 
 std::string truth_json(const Scenario& s) {
   Json effects = Json::array();

@@ -1,5 +1,11 @@
 #include "daemon/base/sqlite_file.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/temporary.h"
@@ -44,4 +50,47 @@ TEST(SqliteFile, AStatementThatTheSchemaHasNotFailsWhateverIsAskedOfIt) {
 }
 
 }  // namespace sqlite_file_test
+
+namespace damaged_database_test {
+
+using Names = std::vector<std::string>;
+constexpr std::int64_t kNow_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
+
+TEST(DamagedDatabase, IsSetAsideWithItsLog) {
+  const test::TemporaryDirectory directory;
+  for (const char* name : {"h.sqlite", "h.sqlite-wal", "h.sqlite-shm"})
+    test::write_file(directory.path(name), name);
+  SetAside aside;
+  set_aside_database(directory.path("h.sqlite"), kNow_us, "malformed", aside);
+  EXPECT_EQ(aside.problem, "");
+  EXPECT_EQ(aside.count, 1);
+  EXPECT_EQ(aside.path, directory.path("h.sqlite.corrupt-20261122T000000Z"));
+  EXPECT_EQ(aside.reason, "malformed");
+  EXPECT_EQ(directory.names(),
+            (Names{"h.sqlite.corrupt-20261122T000000Z", "h.sqlite.corrupt-20261122T000000Z-shm",
+                   "h.sqlite.corrupt-20261122T000000Z-wal"}));
+  EXPECT_EQ(test::read_file(aside.path), "h.sqlite");
+}
+
+TEST(DamagedDatabase, TheThreeLargestStay) {
+  const test::TemporaryDirectory directory;
+  SetAside aside;
+  for (const int bytes : {50, 10, 40, 20, 30}) {
+    test::write_file(directory.path("h.sqlite"), std::string(static_cast<std::size_t>(bytes), 'x'));
+    test::write_file(directory.path("h.sqlite-wal"), "log");
+    set_aside_database(directory.path("h.sqlite"), kNow_us, "malformed", aside);
+    ASSERT_EQ(aside.problem, "");
+  }
+  EXPECT_EQ(aside.count, 5);
+  std::vector<std::int64_t> kept;
+  for (const std::string& name : directory.names())
+    if (!name.ends_with("-wal"))
+      kept.push_back(static_cast<std::int64_t>(std::filesystem::file_size(directory.path(name))));
+  std::sort(kept.begin(), kept.end());
+  EXPECT_EQ(kept, (std::vector<std::int64_t>{30, 40, 50}));
+  EXPECT_EQ(directory.names().size(), 6u) << "their logs with them";
+}
+
+}  // namespace damaged_database_test
+
 }  // namespace framewatch::daemon

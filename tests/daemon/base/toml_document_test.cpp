@@ -1,5 +1,8 @@
 #include "daemon/base/toml_document.h"
 
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace framewatch::daemon {
@@ -49,4 +52,55 @@ TEST(TomlDocument, TakesPointsThatAreNoParts) {
 }
 
 }  // namespace toml_document_test
+
+namespace toml_advice_test {
+
+struct Mistake {
+  const char* text;
+  int line, column;
+  const char* words;
+};
+
+const Mistake kMistakes[] = {
+    {"a = 1\nname = \u201cTower\u201d\n", 2, 8, "a curly quote"},
+    {"a = \u2018x\u2019\n", 1, 5, "a curly quote"},
+    {"[channel]\na = 1\n[channel]\na = 2\n", 3, 1, "write [[channel]], in double brackets"},
+    {"a =\n", 1, 4, "nothing stands after the ="},
+    {"a = 1,5\n", 1, 6, "a point, not a comma: write 1.5"},
+    {"a = True\n", 1, 5, "true or false, in lower case"},
+    {"a = 1 ; half\n", 1, 7, "a remark begins with #"},
+    {"[structure\n", 1, 11, "the ] is missing"},
+    {"stories 3\n", 1, 9, "neither a [section] nor a line of the form key = value"},
+    {"name = \"Tower\n", 1, 14, "the \" is missing"},
+    {"floor = rigid\n", 1, 9, "a text stands between quotes: \"rigid\""},
+};
+
+TEST(TomlAdvice, IsAPersonsWordForKnownMistakes) {
+  for (const Mistake& m : kMistakes) {
+    std::vector<TextProblem> problems;
+    EXPECT_FALSE(parse_toml(m.text, problems).has_value()) << m.text;
+    ASSERT_EQ(problems.size(), 1u) << m.text;
+    EXPECT_NE(problems[0].message.find(m.words), std::string::npos)
+        << m.text << problems[0].message;
+    EXPECT_EQ(problems[0].place.line, m.line) << m.text;
+    EXPECT_EQ(problems[0].place.column, m.column) << m.text << problems[0].message;
+  }
+}
+
+TEST(TomlAdvice, WhatIsNotKnownIsTheParsers) {
+  int column = 3;
+  EXPECT_EQ(toml_advice("leading zeroes are prohibited", "a = 01", column),
+            "leading zeroes are prohibited");
+  EXPECT_EQ(column, 3);
+}
+
+TEST(TomlAdvice, CurlyQuotesInTextsAndRemarksAreNobodysBusiness) {
+  std::vector<TextProblem> problems;
+  EXPECT_TRUE(
+      parse_toml("a = \"the \u201ctower\u201d\"  # \u201cso\u201d\n", problems).has_value());
+  EXPECT_TRUE(problems.empty());
+}
+
+}  // namespace toml_advice_test
+
 }  // namespace framewatch::daemon

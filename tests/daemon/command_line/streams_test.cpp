@@ -83,7 +83,7 @@ TEST_F(Streams, ReportAndWhatADiskDoesNotTake) {
 
 TEST_F(Streams, StandardInputIsOneFile) {
   EXPECT_EQ(shell("$F replay - -").err,
-            "framewatch replay: - is standard input, which is one file only\n");
+            "framewatch replay: - is standard input and can be given only once\n");
   EXPECT_NE(shell("head -c 3000 /dev/zero | $F check - --max-size 1").err, "");
   const ShellResult empty = shell("$F replay table_two_story.toml - --out x.csv");
   EXPECT_EQ(empty.status, kBadInput);

@@ -51,7 +51,7 @@ TEST_F(Usage, AMisspeltCommandIsToldWithWhatWasMeant) {
             "report or record?\n");
   EXPECT_EQ(shell("$F xyzzy").err,
             "framewatch: there is no command xyzzy: framewatch help lists them\n");
-  EXPECT_EQ(shell("$F").err, "framewatch: which command? `framewatch help` lists them\n");
+  EXPECT_EQ(shell("$F").err, "framewatch: no command given; run `framewatch help` for a list\n");
   EXPECT_EQ(shell("$F").status, kBadInput);
 }
 
@@ -73,7 +73,7 @@ TEST_F(Usage, EveryMisspeltOptionIsToldBeforeAnythingElse) {
 
 TEST_F(Usage, OtherBadUsageNamesTheCommandAndItsHelp) {
   EXPECT_EQ(shell("$F check").err,
-            "framewatch check: CONFIG is required\n`framewatch help check` says how it is used\n");
+            "framewatch check: CONFIG is required\nrun `framewatch help check` for its usage\n");
   EXPECT_EQ(shell("$F demo --seconds no").status, kBadInput);
 }
 
@@ -96,10 +96,9 @@ TEST_F(Usage, FleetIsAProgramOfItsOwn) {
       "cp $F framewatch; for c in fleet uplink; do PATH=/usr/bin:/bin ./framewatch $c x; done");
   EXPECT_EQ(alone.status, kBadInput);
   EXPECT_EQ(alone.err,
-            "framewatch fleet: needs the program framewatch-fleet, which is not here (Debian "
-            "package framewatch-fleet)\n"
-            "framewatch uplink: needs the program framewatch-fleet, which is not here (Debian "
-            "package framewatch-fleet)\n");
+            "framewatch fleet: needs the program framewatch-fleet; install the Debian package "
+            "framewatch-fleet\nframewatch uplink: needs the program framewatch-fleet; install the "
+            "Debian package framewatch-fleet\n");
   // Whatever lies beside the program, or in PATH, gets the words that follow.
   test::write_file(directory_.path("framewatch-fleet"), "#!/bin/sh\necho \"$@\"\n");
   EXPECT_EQ(shell("chmod +x framewatch-fleet; ./framewatch fleet task m 1").out, "task m 1\n");

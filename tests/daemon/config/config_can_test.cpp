@@ -86,7 +86,7 @@ TEST(ConfigCan, AMessageOfTwoNodesIsTold) {
   test::write_file(directory.path("n.dbc"), kDbc);
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(parse_config(directory.path("c.toml"), text + two, problems));
-  EXPECT_NE(test::told(problems).find("Accel has an id that Accel of node N has too: 180"),
+  EXPECT_NE(test::told(problems).find("Accel has the same id as Accel of node N: 180"),
             std::string::npos)
       << test::told(problems);
 }

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/base/process_usage.h"
+#include "daemon/base/process.h"
 #include "fleet/store/fleet_schema.h"
 
 namespace framewatch::fleet {

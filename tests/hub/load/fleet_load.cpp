@@ -22,8 +22,8 @@
 #include <framewatch/watch_t.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/process_usage.h"
-#include "daemon/base/stop_signal.h"
+#include "daemon/base/process.h"
+#include "daemon/base/signals.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/number_text.h"
 #include "fleet/link/nats_link.h"

@@ -5,12 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/config/keys/action_options.h"
 #include "daemon/config/keys/can_options.h"
 #include "daemon/config/keys/channel_options.h"
-#include "daemon/config/keys/command_options.h"
 #include "daemon/config/keys/event_report_options.h"
-#include "daemon/config/keys/gap_options.h"
+#include "daemon/config/keys/fleet_options.h"
 #include "daemon/config/keys/history_options.h"
 #include "daemon/config/keys/lcm_options.h"
 #include "daemon/config/keys/section.h"
@@ -67,7 +65,7 @@ void round_trip(std::string_view section, int& keys) {
     SCOPED_TRACE(name_of(o));
     const auto is_default = [&](const Settings& s) { return o.target.same(&s, &absent); };
     if (!o.required && !kDefaultsOfTheTableOnly.contains(name_of(o))) {
-      EXPECT_TRUE(is_default(unread)) << "the struct has another default than the table";
+      EXPECT_TRUE(is_default(unread)) << "reading the default's text changes the field";
     }
     const std::string text = std::string(o.key) + " = " + test::another_value(o) + "\n";
     const Settings changed = read<Settings>(section, text);

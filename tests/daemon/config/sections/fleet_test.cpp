@@ -46,7 +46,8 @@ TEST(FleetSection, WhatIsWrongIsSaidAtItsLine) {
         std::tuple("\"tls://10.0.0.2:4222\"", "\"tls://me:secret@hub:4222\"",
                    "is not tls://HOST:PORT"),
         std::tuple("\"c.key\"", "\"\"", "must not be empty"),
-        std::tuple("ca = ", "accept = [\"reboot\"]\nca = ", "'reboot' is none of acknowledge"),
+        std::tuple("ca = ", "accept = [\"reboot\"]\nca = ",
+                   "must be acknowledge, raw, resend or minutes, got 'reboot'"),
         std::tuple("ca = \"ca.pem\"", "", "ca")}) {
     const std::string told = problems_of(test::replaced(kFleet, what, by));
     EXPECT_NE(told.find(rule), std::string::npos) << what << " " << by << ": " << told;

@@ -6,7 +6,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/config/keys/option_table.h"
-#include "daemon/config/sections/hazus_limits.h"
+#include "daemon/config/sections/fragility.h"
 #include "tests/support/config_fixture.h"
 
 namespace framewatch::daemon {
@@ -103,7 +103,7 @@ TEST(Fragility, ProblemsAreToldAllAtOnceWithTheirLines) {
 
 TEST(Fragility, WhatDoesNotGoTogetherIsRefused) {
   const std::pair<const char*, const char*> kCases[] = {
-      {"[fragility]\n", "must be given where there is no type"},
+      {"[fragility]\n", "must be given if there is no type"},
       {"[fragility]\ntype = \"C1\"\n", "design_level: must be given with type"},
       {"[fragility]\ntype = \"URM\"\ndesign_level = \"high\"\n",
        "HAZUS has no drift limits of URML"},
@@ -113,7 +113,7 @@ TEST(Fragility, WhatDoesNotGoTogetherIsRefused) {
        "moderate_drift_ratio"},
       {"[fragility]\nslight_drift_ratio = 0.01\nmoderate_drift_ratio = 0.02\n"
        "extensive_drift_ratio = 0.03\ncomplete_drift_ratio = 0.04\ndesign_level = \"low\"\n",
-       "says nothing without a type"}};
+       "has no effect without a type"}};
   for (const auto& [section, message] : kCases) {
     const auto problems = wrong(section);
     ASSERT_FALSE(problems.empty()) << section;

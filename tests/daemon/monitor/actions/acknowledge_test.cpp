@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/user_name.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/actions/acknowledge.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/events/raised_events.h"

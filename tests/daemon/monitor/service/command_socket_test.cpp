@@ -22,7 +22,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/user_name.h"
+#include "daemon/base/process.h"
 #include "daemon/monitor/service/command_client.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/temporary.h"

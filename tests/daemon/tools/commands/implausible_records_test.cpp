@@ -76,7 +76,7 @@ TEST_F(ImplausibleRecords, TheConfigurationSaysWhatIsPlausible) {
   const std::string said_of = said(head + "0,0,1999,30,0\n0.5,0,2100,1,0\n1,0,0,1,0\n", 0, config);
   expect_holds(said_of, "rec.csv:3: floor-1: 21 m/s^2 is beyond 20 m/s^2");
   EXPECT_EQ(said_of.find("floor-2"), std::string::npos) << said_of;
-  expect_holds(said_of, "rec.csv: sampled at 2 Hz, but " + config + " says rate_hz = ");
+  expect_holds(said_of, "rec.csv: sampled at 2 Hz, but " + config + " has rate_hz = ");
 }
 
 TEST_F(ImplausibleRecords, ALogIsConvertedAndTold) {

@@ -1,10 +1,9 @@
-#include "daemon/tools/demo/demo_can.h"
+#include "daemon/tools/demo/demo_scenario.h"
 
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/demo/demo_scenario.h"
 #include "drivers/can/can_intake.h"
 #include "tests/support/can_traffic.h"
 

@@ -156,7 +156,7 @@ TEST(Demo, MakesItsOwnNetworkWhereThereIsNoMulticast) {
   if (run("unshare -rn true").exit_code != 0) GTEST_SKIP() << "no user namespaces here";
   const Outcome o = run("unshare -rn " + kDemo);
   EXPECT_EQ(o.exit_code, 0) << o.printed;
-  EXPECT_NE(o.printed.find("namespace of its own"), std::string::npos) << o.printed;
+  EXPECT_NE(o.printed.find("private network namespace"), std::string::npos) << o.printed;
 }
 
 TEST(Demo, RunsInOneProcessWhereThereIsNoNetworkAtAll) {

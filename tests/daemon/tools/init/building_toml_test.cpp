@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/init/read_answers.h"
+#include "daemon/tools/init/dialogue.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/support/config_fixture.h"
 
@@ -147,7 +147,7 @@ TEST(BuildingToml, WhatIsMissingOrWrongIsToldAtOnce) {
   const std::string told = open(wrong);
   for (const char* part :
        {"bays: bays along x, an x, bays along y", "span-y: lengths in m",
-        "heights: there are 3 numbers: give one for all, or 2", "mass: lb is no unit of it",
+        "heights: there are 3 numbers: give one for all, or 2", "mass: unknown unit lb",
         "start: a frequency (1.8 Hz;", "area: does not apply"})
     EXPECT_NE(told.find(part), std::string::npos) << part << "\n" << told;
 }

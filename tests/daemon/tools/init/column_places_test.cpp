@@ -5,8 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/tools/init/title_words.h"
-
 namespace framewatch::daemon {
 namespace column_places_test {
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/config/axis_names.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/history/history_command.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_keeper.h"

@@ -8,8 +8,8 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/temperature_t.hpp>
 
-#include "daemon/config/baseline_file.h"
 #include "daemon/config/changes.h"
+#include "daemon/config/learned_files.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/tools/replay/replay_command.h"
 #include "daemon/tools/simulation/simulate_command.h"

@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <lcm/lcm-cpp.hpp>
 
-#include "daemon/base/user_name.h"
+#include "daemon/base/process.h"
 #include "daemon/tools/report/session_file.h"
 #include "daemon/tools/session/session_finish.h"
 #include "drivers/lcm/lcm_log.h"

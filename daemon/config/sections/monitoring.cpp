@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/config/keys/section.h"
+#include "daemon/config/sections/sections.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kLongestFirst_s = 60;
+constexpr std::size_t kMaxPeriods = 6;
+
+/// Returns the rule that the periods break, or an empty text.
+std::string problem_of(const std::vector<double>& periods_s) {
+  if (periods_s.empty() || periods_s.size() > kMaxPeriods) return "must be 1 to 6 periods";
+  if (periods_s.front() > kLongestFirst_s) return "must begin with at most 60 s";
+  for (std::size_t i = 0; i < periods_s.size(); ++i) {
+    if (periods_s[i] != std::floor(periods_s[i])) return "must be whole seconds";
+    if (i > 0 &&
+        (periods_s[i] <= periods_s[i - 1] || std::fmod(periods_s[i], periods_s[i - 1]) > 0))
+      return "must ascend, each a multiple of the one before";
+  }
+  return {};
+}
+
+/// Returns the rule that the address breaks, or an empty text.
+std::string problem_of_address(const std::string& url) {
+  const auto scheme = url.find("://");
+  if (!url.starts_with("http://") && !url.starts_with("https://"))
+    return "must begin with http:// or https://";
+  const auto host = url.substr(scheme + 3, url.find_first_of("/?#", scheme + 3) - scheme - 3);
+  if (host.empty()) return "must name a host";
+  if (host.find('@') != std::string::npos)
+    return "must not contain a password: put it into webhook_header_file";
+  if (std::any_of(url.begin(), url.end(), [](char c) { return c <= ' ' || c == 127; }))
+    return "must not contain spaces";
+  return {};
+}
+
+}  // namespace
+
+std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("gap");
+  if (entry == nullptr) return std::nullopt;
+  ConfigSection section("gap", "gap", &entry->value, {1, 1}, problems);
+  GapSettings out;
+  section.read_into(out);
+  return out;
+}
+
+std::optional<HistorySettings> read_history(const TomlValue& document,
+                                            std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("history");
+  if (entry == nullptr) return std::nullopt;
+  ConfigSection section("history", "history", &entry->value, {1, 1}, problems);
+  HistorySettings out;
+  section.read_into(out);
+  if (section.given("directory") && out.directory.empty())
+    section.problem("directory", "must not be empty");
+  if (section.given("summary_s"))
+    if (const std::string rule = problem_of(section.list("summary_s"));
+        section.good("summary_s") && !rule.empty())
+      section.problem("summary_s", rule);
+  return out;
+}
+
+std::optional<EventReportSettings> read_event_report(const TomlValue& document,
+                                                     std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("event_report");
+  if (entry == nullptr) return std::nullopt;
+  ConfigSection section("event_report", "event_report", &entry->value, {1, 1}, problems);
+  EventReportSettings out;
+  section.read_into(out);
+  if (section.given("directory") && out.directory.empty())
+    section.problem("directory", "must not be empty");
+  if (out.red_drift_ratio < out.yellow_drift_ratio)
+    section.problem("red_drift_ratio", "must not be below yellow_drift_ratio");
+  if (out.red_loss_ratio < out.yellow_loss_ratio)
+    section.problem("red_loss_ratio", "must not be below yellow_loss_ratio");
+  return out;
+}
+
+std::optional<ActionSettings> read_actions(const TomlValue& document,
+                                           std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("actions");
+  if (entry == nullptr) return std::nullopt;
+  ConfigSection section("actions", "actions", &entry->value, {1, 1}, problems);
+  ActionSettings out;
+  section.read_into(out);
+  if (!out.command.empty() && out.command.front().empty())
+    section.problem("command", "must begin with the name of a program");
+  if (section.given("webhook"))
+    if (const std::string rule = problem_of_address(out.webhook); !rule.empty())
+      section.problem("webhook", rule);
+  for (const char* key : {"webhook_header_file", "webhook_ca_file"})
+    if (section.given(key) && out.webhook.empty()) section.problem(key, "needs a webhook");
+  if (section.good("command") && section.good("webhook") && out.command.empty() &&
+      out.webhook.empty())
+    section.problem("", "needs a command or a webhook");
+  return out;
+}
+
+std::optional<WatchSettings> read_watch(const TomlValue& document,
+                                        std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("watch");
+  if (entry == nullptr) return std::nullopt;
+  ConfigSection section("watch", "watch", &entry->value, {1, 1}, problems);
+  WatchSettings out;
+  section.read_into(out);
+  out.options.temperature = !out.temperature_channel.empty();
+  return out;
+}
+
+}  // namespace framewatch::daemon
