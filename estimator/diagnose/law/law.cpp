@@ -15,7 +15,7 @@ double signed_power(double x, double p) {
   return std::copysign(power_of(std::abs(x), p), x);
 }
 
-/// Contact toward positive deformation. It only pushes, where its spring hardens.
+/// Force of a contact toward positive deformation. It only pushes if its spring hardens.
 double contact(const std::vector<double>& p, double d, double v) {
   if (d <= p[1]) return 0;
   const double force = p[0] * (d - p[1]) + value_or(p, 2, 0) * v;
@@ -26,7 +26,7 @@ bool preslides(const LawValues& values) {
   return values.form == LawForm::friction && value_or(values.p, FrictionIndex::presliding, 0) > 0;
 }
 
-/// Whether z follows an equation of its rate.
+/// Returns true if z follows a rate equation.
 bool has_z(LawForm form) {
   return form == LawForm::hysteresis || form == LawForm::pinched || form == LawForm::slip_lock;
 }

@@ -11,22 +11,23 @@
 
 namespace framewatch::estimator {
 
-/// An element law in time, with the internal state of hysteresis.
+/// Evaluates one element law over time. Holds the internal state of hysteresis.
 class LawMotion {
  public:
   explicit LawMotion(const LawValues& values);
 
-  /// Restoring force, N, at deformation d (m), its rate v (m/s) and time t (s), after a step from
-  /// the state of the last accept().
+  /// Returns the restoring force, N, at deformation d (m), rate v (m/s) and time t (s), after a
+  /// step from the state at the last accept().
   double force(double d, double v, double t);
   /// Ends the step at this motion.
   void accept(double d, double v, double t);
 
  private:
   double plain_force(double d, double v, double t);
-  /// Of the law of amplitude at d/D.
+  /// Returns z of LawForm::amplitude at d/D.
   double amplitude_z(double x) const;
-  /// z of hysteresis at d; that of the last d is kept, a step ends where its force was found.
+  /// Returns z of a hysteretic law at d. Caches the last one because a step ends where its force
+  /// was evaluated.
   double next_z(double d);
 
   LawValues values_;
@@ -36,11 +37,12 @@ class LawMotion {
   HystereticStep step_;
   bool has_next_ = false;
   double next_d_ = 0, next_z_ = 0;
-  std::vector<double> memory_;  ///< of sliders, or of the last reversal
+  std::vector<double> memory_;  ///< positions of sliders, last reversal, or slack
   std::optional<SlipCurve> slip_;
 };
 
-/// Force of a law under a known motion: d, v at even steps of step_s.
+/// Returns the force of a law, N, under a known motion. d, v: deformation (m) and rate (m/s) at
+/// steps of step_s.
 Eigen::VectorXd law_force(const LawValues& values, const Eigen::VectorXd& d,
                           const Eigen::VectorXd& v, double step_s);
 

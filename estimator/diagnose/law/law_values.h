@@ -5,24 +5,24 @@
 
 namespace framewatch::estimator {
 
-/// Families of laws that a diagnosis fits. A family covers several names of the catalogue; the
-/// fitted values decide between them (name_of_fit). Those with `gap` in the name are mechanical
+/// Families of laws that a diagnosis fits. A family covers several names of the catalog; the fitted
+/// values decide between them (name_of_fit). Families with `gap` in the name are mechanical
 /// clearances.
 enum class LawForm {
   // restoring force over deformation and rate, at an element, between floors, or of whole frames
-  power,          ///< a sgn(d) |d/D|^p
-  saturating,     ///< a d0 tanh(d/d0)
-  hysteresis,     ///< kh z, Bouc-Wen of any sharpness and sign: hysteretic_force.h
-  sliders,        ///< kh z, springs in series with sliders that give way one after the other
-  asymptotic,     ///< kh z, a curve from every reversal toward yielding: hysteretic_force.h
-  pinched,        ///< hysteresis with a slip zone about zero force
-  slip_lock,      ///< hysteresis with a slip zone about zero deformation
-  slack,          ///< a brace that is slack by what it has yielded: slack.h
-  friction,       ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: sliding.h
+  power,       ///< a sgn(d) |d/D|^p
+  saturating,  ///< a d0 tanh(d/d0)
+  hysteresis,  ///< kh z, Bouc-Wen with any sharpness and sign: HysteresisIndex
+  sliders,     ///< kh z, springs in series with sliders that yield one after the other: SliderIndex
+  asymptotic,  ///< kh z, a curve from every reversal toward yielding: AsymptoteIndex
+  pinched,     ///< hysteresis with a slip zone around zero force
+  slip_lock,   ///< hysteresis with a slip zone around zero deformation
+  slack,       ///< a brace that becomes slack by its plastic deformation: SlackIndex
+  friction,    ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: FrictionIndex
   power_damping,  ///< a sgn(v) |v/V|^p
-  amplitude,      ///< a ((1 - s) sgn(d) |d/D|^p + s slip(d/D)) + b sgn(v) |v/V|^q: slip_curve.h
+  amplitude,      ///< a ((1 - s) sgn(d) |d/D|^p + s slip(d/D)) + b sgn(v) |v/V|^q: SlipCurve
   gap_positive,   ///< contact at clearance g: max(kg (d - g) + cg v, 0) while d > g
-  gap_negative,   ///< the same toward negative deformation
+  gap_negative,   ///< contact toward negative deformation
   gap_both,       ///< both; kg < 0 softens
   changing,       ///< dk clip((t - t0)/T, 0, 1) d, t0 and T of each record
   // at a node, linear
@@ -32,7 +32,7 @@ enum class LawForm {
   damper,         ///< between floors
   rocking,        ///< of the base
   bending,        ///< of the frames
-  modal_damping,  ///< ratio of one mode, beside the dashpots'
+  modal_damping,  ///< damping ratio of one mode, in addition to the dashpots
   panels,         ///< of a floor that is declared rigid: G and damping
   // external force at a node
   harmonic,   ///< one frequency, amplitude and phase of each record
@@ -43,22 +43,23 @@ enum class LawForm {
   clipped,  ///< the readings of the axis are not used
 };
 
-/// Indices of the parameters of LawForm::amplitude. `slip` is s above, 0 where it is missing.
+/// Indices of the parameters of LawForm::amplitude. `slip` is s above; its default is 0.
 struct AmplitudeIndex {
   enum : std::size_t { elastic, exponent, damping, damping_exponent, slip };
 };
 
-/// Whether the law is a force over deformations: of one element, or of every one of a place.
+/// Returns true if the law is a force over deformations, of one element or of every element of a
+/// place.
 bool is_element_law(LawForm form);
-/// Whether it remembers its past: hysteresis of any kind.
+/// Returns true if the law depends on past motion: hysteresis of any kind.
 bool is_hysteretic(LawForm form);
-/// Whether it is a contact.
+/// Returns true if the law is a contact.
 bool is_contact(LawForm form);
 
-/// Parameters of an element law and the scales it is written in.
+/// Parameters of an element law and its scales.
 struct LawValues {
   LawForm form = LawForm::power;
-  /// As named at the form: amplitude first. Those of hysteresis: hysteretic_force.h.
+  /// In the order named at the form, amplitude first. For hysteresis see HysteresisIndex.
   std::vector<double> p;
   double deformation = 1.0;  ///< D, m
   double rate = 1.0;         ///< V, m/s

@@ -11,7 +11,7 @@ using I = FrictionIndex;
 
 constexpr double kAtRest = 1e-6;  // of v0
 
-/// z approaches its steady value at this rate, 1/s.
+/// Returns the rate, 1/s, at which z approaches its steady value.
 double approach_per_s(const std::vector<double>& p, double v) {
   if (std::abs(v) < kAtRest * p[I::v0])
     return p[I::v0] / ((1 + value_or(p, I::static_ratio, 0)) * p[I::presliding]);
@@ -26,7 +26,7 @@ double steady_friction(const std::vector<double>& p, double v) {
   return (1 + more) * std::tanh(v / p[I::v0]);
 }
 
-/// Exact for a steady value that changes evenly and a constant rate of approach.
+/// Exact for a steady value that changes linearly and a constant rate of approach.
 double sliding_z(const std::vector<double>& p, double z, double v, double v_now, double step_s) {
   const double from = steady_friction(p, v), to = steady_friction(p, v_now);
   const double passed = 0.5 * (approach_per_s(p, v) + approach_per_s(p, v_now)) * step_s;

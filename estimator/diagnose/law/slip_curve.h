@@ -5,8 +5,8 @@
 
 namespace framewatch::estimator {
 
-/// Force of joints that slip a little wherever they move: z = sgn(x) |x|^p at first loading, and
-/// from every reversal (x_r, z_r) on
+/// Force of joints that slip a little at any motion: z = sgn(x) |x|^p at first loading. From every
+/// reversal (x_r, z_r) on,
 ///
 ///   z = z_r + 2 sgn(x - x_r) |(x - x_r) / 2|^p
 ///
@@ -14,10 +14,10 @@ namespace framewatch::estimator {
 /// Appl. Mech. 33 (1966); Segalman, J. Appl. Mech. 72 (2005).
 class SlipCurve {
  public:
-  /// At rest. exponent: p, above 0.
+  /// Starts at rest. exponent: p, above 0.
   explicit SlipCurve(double exponent) : exponent_(exponent) {}
 
-  /// z after a step from where it is to x.
+  /// Returns z after a step from the current position to x.
   double at(double x) const { return follow(x).z; }
   /// Ends the step at x.
   void move(double x);
@@ -26,8 +26,8 @@ class SlipCurve {
   struct Point {
     double x, z;
   };
-  /// The end of a step, and how many reversals have loops that are open there: one more than before
-  /// where the step begins with one.
+  /// End of a step. `open` counts the reversals whose loops are still open there, including one at
+  /// the start of the step.
   struct End {
     std::size_t open;
     double z;

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kFewest = 8;  ///< frequencies that tell a delay
+constexpr Index kFewest = 8;  ///< frequencies that determine a delay
 
 VectorXd tapered(const VectorXd& signal, Index size) {
   const VectorXd phase = VectorXd::LinSpaced(size, 0, 2 * M_PI);

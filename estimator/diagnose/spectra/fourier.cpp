@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kMaxSizes = 16;
 
-/// Transforms between a real signal and half of its spectrum. What is known of a size beforehand,
-/// which takes longer than a transform, is kept.
+/// Transforms between a real signal and half of its spectrum. Caches the twiddle factors of recent
+/// sizes because computing them takes longer than a transform.
 class Transforms {
  public:
   Transforms() { transform_.SetFlag(Eigen::FFT<double>::HalfSpectrum); }

@@ -9,7 +9,7 @@ namespace framewatch::estimator {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kSincHalf = 12;  ///< taps either side
+constexpr int kSincHalf = 12;  ///< taps on either side
 
 VectorXd upsampled(const VectorXd& signal, int ratio, double shift) {
   if (ratio == 1 && shift == 0) return signal;

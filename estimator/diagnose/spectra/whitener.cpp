@@ -16,7 +16,8 @@ using Eigen::VectorXcd;
 
 namespace {
 
-constexpr Index kSmall = 24;  ///< equations below which neither triangles nor the kernels pay
+constexpr Index kSmall =
+    24;  ///< equations below which neither triangles nor the kernels are faster
 constexpr Index kRowsTogether = 8;
 
 bool is_lower_triangular(const MatrixXcd& matrix) {
@@ -26,7 +27,7 @@ bool is_lower_triangular(const MatrixXcd& matrix) {
   return true;
 }
 
-/// to += factor from. Eigen's own loop waits for the factor in every turn.
+/// to += factor * from. Eigen's own loop reloads the factor in every iteration.
 void add_times(std::complex<double> factor, const std::complex<double>* from, Index count,
                std::complex<double>* to) {
   const double re = factor.real(), im = factor.imag();
@@ -70,8 +71,8 @@ VectorXcd Whitener::adjoint_times(const Ref<const VectorXcd>& rows) const {
   return out;
 }
 
-/// The last columns first: then the rows of a triangle end alike, and those that are longer need
-/// none of the columns before. A column's real part, then its imaginary part.
+/// Starts with the last columns: then the rows of a triangle end alike, and longer rows need none
+/// of the columns before. Stores a column's real part, then its imaginary part.
 MatrixXcd Whitener::metric() const {
   const Index n = equations_;
   if (n < kSmall) return whole_.adjoint().lazyProduct(whole_);

@@ -4,30 +4,30 @@
 
 namespace framewatch::estimator {
 
-/// The matrix that whitens the equations of one bin. Of a large lower triangle only the triangle is
-/// kept: those of a tall building take most of the memory.
+/// The matrix that whitens the equations of one bin. Stores only the triangle of a large lower
+/// triangular matrix, because whiteners take most of a tall building's memory.
 class Whitener {
  public:
   explicit Whitener(Eigen::MatrixXcd whole);
 
   Eigen::Index equations() const { return equations_; }
-  /// Its product with forces on the equations.
+  /// Returns the whitened rows of forces on the equations.
   Eigen::VectorXcd times(const Eigen::Ref<const Eigen::VectorXcd>& forces) const;
-  /// whitener^H rows.
+  /// Returns whitener^H rows.
   Eigen::VectorXcd adjoint_times(const Eigen::Ref<const Eigen::VectorXcd>& rows) const;
-  /// whitener^H whitener.
+  /// Returns whitener^H whitener.
   Eigen::MatrixXcd metric() const;
   Eigen::MatrixXcd whole() const;
-  /// Sum of the squares of its numbers.
+  /// Returns the sum of the squares of its numbers.
   double squared_norm() const;
   bool is_finite() const;
 
  private:
-  /// Column j of the triangle, from the diagonal on.
+  /// Returns column j of the triangle, from the diagonal on.
   Eigen::Map<const Eigen::VectorXcd> column(Eigen::Index j) const;
 
   Eigen::Index equations_;
-  Eigen::MatrixXcd whole_;     ///< empty where the triangle is kept
+  Eigen::MatrixXcd whole_;     ///< empty if only the triangle is stored
   Eigen::VectorXcd triangle_;  ///< column after column
 };
 

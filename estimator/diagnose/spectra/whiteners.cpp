@@ -17,7 +17,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using kernels::kBins;
 
-/// Complex matrices of kBins frequencies side by side, as the kernels want them.
+/// Complex matrices of kBins frequencies side by side, in the layout of the kernels.
 class SideBySide {
  public:
   SideBySide(Index rows, Index columns)
@@ -34,7 +34,7 @@ class SideBySide {
   }
   double& real(Index row, Index column, Index k) { return *at(row, column, k); }
 
-  /// Columns of a matrix in this order.
+  /// Stores the columns of a matrix in this order.
   void put(const MatrixXcd& from, const std::vector<Index>& order, Index k) {
     for (Index j = 0; j < columns_; ++j)
       for (Index i = 0; i < rows_; ++i) {
@@ -74,8 +74,8 @@ void add_pushed(const MatrixXd& pushed, Index k, SideBySide& covariance) {
 
 namespace {
 
-/// The axes in the order of the first equation that each is in: then the axes of an equation lie
-/// together, and the kernels pass over the others.
+/// Returns the axes sorted by the first equation that contains them. The axes of an equation then
+/// lie together, and the kernels skip the others.
 std::vector<Index> by_first_equation(const MatrixXcd& operation) {
   const auto first = [&](Index axis) {
     Index i = 0;
@@ -88,7 +88,7 @@ std::vector<Index> by_first_equation(const MatrixXcd& operation) {
   return out;
 }
 
-/// Of every row, the columns that are not zero in all bins lie in [first, end).
+/// For every row, the columns that are not zero in all bins lie in [first, end).
 struct Extent {
   std::vector<int> first, end;
 
@@ -103,7 +103,8 @@ struct Extent {
   }
 };
 
-/// The same of the lower triangle of the covariance of rows whose axes have this extent.
+/// Returns, for every row of the covariance's lower triangle, its first column that is not zero.
+/// axes: extent of the rows' axes.
 std::vector<int> first_of_covariance(const Extent& axes, const MatrixXd& pushed) {
   std::vector<int> out;
   for (std::size_t i = 0; i < axes.first.size(); ++i) {
