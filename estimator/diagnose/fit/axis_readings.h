@@ -7,12 +7,12 @@
 
 namespace framewatch::estimator {
 
-/// Spectra of the axes, freed from the errors that the model gives them (gain, clock, misalignment,
-/// exchanged axes): axes x bins.
+/// Returns the spectra of the axes, corrected for the model's errors of axes (gain, clock,
+/// misalignment, exchanged axes): axes x bins.
 Eigen::MatrixXcd calibrated(const Model& model, const RecordSegment& segment);
 
-/// Variance of every axis' noise in one bin of calibrated(); of acceleration where the axis
-/// measures displacement.
+/// Returns the noise variance of every axis in one bin of calibrated(), as acceleration also if the
+/// axis measures displacement.
 Eigen::VectorXd bin_noise(const Model& model, const RecordSegment& segment, Eigen::Index bin);
 
 }  // namespace framewatch::estimator

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kLongestStep = 0.5;          ///< of a stiffness, relative to the design
-constexpr int kTries = 7, kTriesOfLarge = 4;  ///< of a step, with more and more damping
+constexpr int kTries = 7, kTriesOfLarge = 4;  ///< of a step, with increasing damping
 
 double total_misfit(const std::vector<Whitened>& systems) {
   double out = 0;
@@ -67,7 +67,7 @@ double Fitter::expected(std::size_t record, const Model& model) const {
   double n = static_cast<double>(plant_.read_equations());
   for (const ModelEffect& e : model.effects)
     n -= e.form == LawForm::clipped || e.form == LawForm::broadband;
-  // The ends of motions that no axis reads have two values each.
+  // The end terms of motions that no axis reads have two values each.
   return n * static_cast<double>(segments_[record].bins()) - 2 * n -
          static_cast<double>(plant_.unread.cols());
 }
@@ -150,7 +150,7 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   double damping = 1e-6;
   const int tries = plant_.is_large() ? kTriesOfLarge : kTries;
   int worse = 0;
-  double weighted = total_misfit(now);  // when the weights were those of the model
+  double weighted = total_misfit(now);  // misfit when the weights were computed
   bool own_weights = true;
   for (; out.steps < options.max_steps; ++out.steps) {
     if (!own_weights && total_misfit(now) < kNearNoise * expected(out.model)) {
@@ -163,8 +163,8 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
     }
     const Linearised at = linearise(out.model, std::move(now), options, &caches);
     NormalEquations equations = normal_equations(at, within_);
-    // Within a step the weights stay those of `at`: a wrong model must not reduce its misfit by
-    // weights that grow soft. Near the noise the change of the weights is part of the gradient.
+    // The weights stay those of `at` within a step, because a wrong model must not lower its misfit
+    // by softer weights. Near the noise, the change of the weights is part of the gradient.
     const double before = at.level * prior_cost(out.model) + total_misfit(at.systems);
     equations.normal.diagonal() += at.prior;
     bool better = false;

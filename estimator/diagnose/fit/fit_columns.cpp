@@ -18,7 +18,7 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using Kind = Unknown::Kind;
 
-/// Derivative by one parameter of an effect, the motion held.
+/// Returns the derivative by one parameter of an effect, with the motion held.
 VectorXd parameter_column(const Plant& plant, const Model& model, const RecordSegment& segment,
                           std::size_t record, const Whitened& system, const Unknown& unknown,
                           int ratio) {
@@ -58,7 +58,7 @@ VectorXd parameter_column(const Plant& plant, const Model& model, const RecordSe
   return whiten_rows(system, change);
 }
 
-/// Motions that the linear building's unknowns act on: bins x elements, bins x coordinates, bins x
+/// Motions on which the linear building's unknowns act: bins x elements, bins x coordinates, bins x
 /// axes.
 struct Motions {
   MatrixXcd deformation, inertia, readings;
@@ -105,7 +105,7 @@ Acting acting(const Plant& plant, const Model& model, const RecordSegment& segme
   return {};
 }
 
-/// The same as whitened rows.
+/// Returns such a derivative as whitened rows.
 VectorXd along(const Plant& plant, const Whitened& system, const Acting& one) {
   const Index elements = plant.element_count(), axes = plant.axis_count();
   if (one.direction >= elements && one.direction < elements + axes)
@@ -117,7 +117,7 @@ VectorXd along(const Plant& plant, const Whitened& system, const Acting& one) {
   return whiten_rows(system, direction, one.size);
 }
 
-/// Those of all stories of a group.
+/// Returns the derivative by the shared factor of a group of stories.
 VectorXd along_tied(const Plant& plant, const Model& model, const RecordSegment& segment,
                     const Whitened& system, const Motions& motions, const Unknown& unknown,
                     const Acting& first) {

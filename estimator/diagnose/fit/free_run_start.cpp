@@ -10,10 +10,10 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kStiffer[] = {1, 1.6, 2.5, 4}, kNarrower[] = {1, 0.9, 0.8};
-/// Forces of friction that are tried, of the spring's largest.
+/// Forces of friction to try, relative to the spring's largest.
 constexpr double kMinForce = 0.02, kNextForce = M_SQRT2;
 constexpr std::size_t kForces = 14, kStarts = 2;
-constexpr double kSticks = 3e-3;  ///< of the largest rate: below it friction holds
+constexpr double kSticks = 3e-3;  ///< of the largest rate: friction sticks below it
 constexpr double kSmoother = 3;
 constexpr double kFits = 1.5;  ///< misfit over the expected, below which a fit is a good start
 
@@ -21,7 +21,7 @@ bool ends_with_clearance(const Model& model) {
   return !model.effects.empty() && is_contact(model.effects.back().form);
 }
 
-/// A model's free run, not fitted.
+/// Returns a model's free run, not fitted.
 FitResult as_it_runs(const Fitter& fitter, const Model& model,
                      const std::vector<Eigen::MatrixXcd>& motion) {
   FitOptions run;
@@ -30,8 +30,8 @@ FitResult as_it_runs(const Fitter& fitter, const Model& model,
   return fitter.fit(model, motion, run);
 }
 
-/// Friction between the forces that were tried, and as smooth as comes nearest: from a force that
-/// is too large no step leads down, since it holds.
+/// Refines friction between the tried forces, and its smoothness. A fit cannot do this: from a
+/// force that is too large, friction sticks and no step lowers the cost.
 FitResult closer(const Fitter& fitter, FitResult best) {
   const auto try_with = [&](double force, double smoothness) {
     Model model = best.model;
@@ -48,7 +48,7 @@ FitResult closer(const Fitter& fitter, FitResult best) {
   return best;
 }
 
-/// Mean factor of the design that the frames of a model have, but one.
+/// Returns the mean factor of the design over the frames of a model, except one.
 double mean_factor(const Plant& plant, const Model& model, int but) {
   double sum = 0;
   int count = 0;

@@ -10,11 +10,11 @@
 
 namespace framewatch::estimator {
 
-/// Disagreement of a model's free run and the measurement: NRMSE, sqrt(sum |meas - sim|^2 / sum
-/// |meas|^2) over the band, and the value that the sensors' noise alone would give (floor). Overall
-/// both sums are over all output axes.
+/// Difference between a model's free run and the measurement: NRMSE, sqrt(sum |meas - sim|^2 / sum
+/// |meas|^2) over the band, and its value from the sensors' noise alone (floor). The overall sums
+/// are over all output axes.
 struct Gap {
-  Eigen::VectorXd axis;   ///< base axes: 0
+  Eigen::VectorXd axis;   ///< 0 for base axes
   Eigen::VectorXd floor;  ///< of each axis
   double overall = 0;
   double overall_floor = 0;
@@ -24,21 +24,21 @@ struct Gap {
   Eigen::MatrixXcd difference;  ///< axes x bins: measured minus simulated
 };
 
-/// The gap of one segment, the only definition of it: motion before and after the segment (end
-/// terms, docs/equations.md 32) is what leaves least of the difference. record: its index; ratio:
-/// steps per sample. Empty when the run diverges.
+/// Returns the gap of one segment, or nullopt if the run diverges. This is the only definition of
+/// the gap: motion before and after the segment (end terms, docs/equations.md 32) is chosen to
+/// minimize the difference. record: its index; ratio: steps per sample.
 std::optional<Gap> free_run_gap(const Plant& plant, const Model& model,
                                 const RecordSegment& segment, std::size_t record, int ratio);
 
-/// The same with end terms as the weights of `system` have them.
-/// system: of the model, whitened with Forcing::simulated. Arbitrary forces (LawForm::broadband)
-/// are estimated from the record; a clipped axis is compared with the clipped simulation.
+/// Returns the gap with the end terms of the weights of `system`. system: of the model, whitened
+/// with Forcing::simulated. Estimates arbitrary forces (LawForm::broadband) from the record.
+/// Compares a clipped axis with the clipped simulation.
 Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
            const Whitened& system);
 
-/// Mean NRMSE over the segments from `from` on; 0 when there is none.
+/// Returns the mean NRMSE over the segments from `from` on; 0 without segments.
 double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
-/// The same of what noise alone would give.
+/// Returns the mean floor over the segments from `from` on; 0 without segments.
 double mean_floor(const std::vector<Gap>& gaps, std::size_t from);
 
 }  // namespace framewatch::estimator

@@ -10,16 +10,16 @@
 
 namespace framewatch::estimator {
 
-/// The whitened equations of all segments around one model.
+/// The whitened equations of all segments, linearised around one model.
 struct Linearised {
   const Plant* plant = nullptr;
   std::vector<Unknown> unknowns;
   std::vector<Whitened> systems;  ///< of each segment
   std::vector<Columns> columns;   ///< of each segment: d(rows)/d(unknowns)
-  /// Ratio of misfit to its expectation under noise, at least 1. The prior is weighted with it, so
-  /// that a model that does not fit cannot use masses, gains and clocks to make up for it.
+  /// Ratio of misfit to its expectation under noise, at least 1. The prior is weighted by it, so
+  /// that a model that does not fit cannot compensate with masses, gains and clocks.
   double level = 1;
-  Eigen::VectorXd prior, pull;  ///< level / (2 sigma^2); the same times (centre - value)
+  Eigen::VectorXd prior, pull;  ///< level / (2 sigma^2); that times (centre - value)
 };
 
 }  // namespace framewatch::estimator

@@ -30,7 +30,7 @@ MeasuredDeformation displaced(const RecordSegment& segment, const RowVectorXd& s
   for (Index a = 0; a < sense.size(); ++a)
     if (segment.is_displaced(a)) d += sense[a] * segment.accel.col(a);
 
-  // A line between the ends is taken off, and added again: the rest is periodic.
+  // Subtracts a line between the ends and adds it again, so that the rest is periodic.
   const double slope = (d[samples] - d[0]) / static_cast<double>(samples), first = d[0];
   const VectorXd line =
       VectorXd::LinSpaced(samples, first, first + slope * static_cast<double>(samples - 1));
@@ -45,8 +45,8 @@ MeasuredDeformation displaced(const RecordSegment& segment, const RowVectorXd& s
   return out;
 }
 
-/// Spectrum of the deformation's acceleration from 0 to just below half the sampling rate, its
-/// readings above the band where axes read all of it, nothing below.
+/// Returns the spectrum of the deformation's acceleration from 0 to just below half the sampling
+/// rate: zero below the band, and the readings above it if axes read all of it.
 VectorXcd acceleration(const RecordSegment& segment, const RowVectorXd& sense,
                        const MatrixXcd& motion) {
   const Index samples = segment.intervals(), end = segment.first_bin + segment.bins();

@@ -10,15 +10,15 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMisfit = 1.05;        ///< above it there is something to explain
-constexpr double kLargestMisfit = 60;   ///< 1/f noise does not reach so far above that of the quiet
+constexpr double kMisfit = 1.05;        ///< below it there is nothing to explain
+constexpr double kLargestMisfit = 60;   ///< 1/f noise does not exceed that of quiet times further
 constexpr double kLowestCorner = 0.05;  ///< of the band's lowest frequency
-constexpr double kRatio = 1.12;         ///< of neighbouring corners that are tried
+constexpr double kRatio = 1.12;         ///< between successive corner frequencies to try
 constexpr int kCorners = 80;
 constexpr int kTimes = 3, kSteps = 6;
-constexpr double kSame = 0.15;        ///< relative difference of corners
-constexpr double kPerhapsNoise = 10;  ///< spread_of() with which a fit is tried
-constexpr double kLikeNoise = 2;      ///< the same with which it is noise
+constexpr double kSame = 0.15;        ///< relative difference of corner frequencies
+constexpr double kPerhapsNoise = 10;  ///< spread_of() below which a fit is tried
+constexpr double kLikeNoise = 2;      ///< spread_of() below which it is noise
 
 std::vector<NoiseCell> cells_of(const Whitened& system, const RecordSegment& segment) {
   const Index n = system.operation.equations();
@@ -45,7 +45,7 @@ std::vector<NoiseCell> cells_of(const Fitter& fitter, const FitResult& now) {
   return out;
 }
 
-/// Half the likelihood's logarithm of noise with the corner, negative.
+/// Returns half the negative log-likelihood of noise with this corner frequency.
 double cost_of(const std::vector<NoiseCell>& cells, double corner_hz) {
   double out = 0;
   for (const NoiseCell& c : cells) {
@@ -80,7 +80,7 @@ void set_corner(double corner_hz, std::vector<RecordSegment>& segments) {
 bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now) {
   const Plant& plant = fitter.plant();
   const double misfit = now.total_misfit() / fitter.expected(now.model);
-  // The whitened rows of motions that no axis reads, and of a single equation, tell less.
+  // Motions that no axis reads, or a single equation, give too little evidence.
   if (plant.unread.cols() > 0 || plant.equations() < 2) return false;
   if (misfit < kMisfit || misfit > kLargestMisfit) return false;
   const double earlier_hz = segments.front().corner_hz;

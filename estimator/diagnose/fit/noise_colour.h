@@ -6,29 +6,30 @@
 
 namespace framewatch::estimator {
 
-/// Mean square of what is left in neighbouring bins.
+/// Mean square of the residual in neighboring bins of one equation.
 struct NoiseCell {
-  double hz, now_hz;  ///< frequency, corner of the weights
-  double level;       ///< 1: noise as it was taken to be
+  double hz, now_hz;  ///< frequency; corner frequency of the present weights
+  double level;       ///< 1: noise as assumed in the weights
   double numbers;
 
-  /// Noise with the corner over noise as it was taken to be.
+  /// Returns the noise with this corner frequency over the noise assumed in the weights.
   double expected(double corner_hz) const { return (1 + corner_hz / hz) / (1 + now_hz / hz); }
 };
 
 inline constexpr Eigen::Index kBinsOfCell = 24;
-/// The corner of noise (RecordSegment::corner_hz) that the cells most likely are.
+/// Returns the most likely corner frequency of the noise (RecordSegment::corner_hz).
 double likeliest_corner_hz(const std::vector<NoiseCell>& cells);
-/// Mean square by which cells exceed noise with the corner, over that of such noise. What a model
-/// lacks leaves more than noise; less is noise of unlike channels.
+/// Returns the mean square excess of the cells over noise with this corner frequency, in units of
+/// such noise. Only excess counts: a missing effect leaves more than noise, and less than noise
+/// comes from unequal channels.
 double spread_of(const std::vector<NoiseCell>& cells, double corner_hz);
 
-/// Gives all segments a corner.
+/// Sets the corner frequency of all segments.
 void set_corner(double corner_hz, std::vector<RecordSegment>& segments);
 
-/// Where noise that grows toward low frequencies (RecordSegment::corner_hz) is all that a fit
-/// leaves, alike in all equations and smooth over frequency: gives it to the segments, which are
-/// those of the fitter, and fits again. Whether it did so.
+/// Checks if a fit leaves only noise that grows toward low frequencies (RecordSegment::corner_hz):
+/// equal in all equations and smooth over frequency. If so, sets the corner frequency in the
+/// segments, fits again and returns true. segments: those of the fitter.
 bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now);
 
 }  // namespace framewatch::estimator

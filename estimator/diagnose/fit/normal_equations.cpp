@@ -16,12 +16,12 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Of which add_square() adds to the upper triangle.
+/// Returns a zero matrix for add_square(), which fills the upper triangle.
 RowMatrix empty_square(Index count) {
   return RowMatrix::Zero(count, padded(static_cast<int>(count)));
 }
 
-/// Products of the columns of all unknowns with the rest.
+/// Returns the products of the columns of all unknowns with the rest.
 VectorXd gradient_of(const Linearised& at, std::size_t record) {
   const Plant& plant = *at.plant;
   const Whitened& system = at.systems[record];

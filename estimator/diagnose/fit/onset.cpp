@@ -7,11 +7,11 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kFirstStep = 0.01;  ///< of the record
-constexpr int kOnsetSteps = 1;       ///< of a fit that tells whether an onset is better
-constexpr int kSettlingSteps = 4;    ///< when the onsets are known
+constexpr int kOnsetSteps = 1;       ///< of a fit that compares onsets
+constexpr int kSettlingSteps = 4;    ///< after the last onset
 constexpr double kMinGain = 1;       ///< of the misfit
 
-/// Replaces the fit by one with another onset if that is better; whether it was.
+/// Replaces the fit by one with another onset if that is better. Returns true if it was.
 bool moved(const Fitter& fitter, std::size_t record, double onset_s, FitResult& fit) {
   FitOptions options;
   options.max_steps = kOnsetSteps;

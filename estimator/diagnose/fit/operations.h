@@ -8,8 +8,8 @@
 
 namespace framewatch::estimator {
 
-/// The operations D of every bin of a segment, equations x axes, docs/equations.md (31). Of a large
-/// building they are made when they are asked for: they would fill memories.
+/// The operations D of every bin of a segment, equations x axes, docs/equations.md (31). Those of a
+/// large building are computed on demand because of their memory.
 class Operations {
  public:
   Operations() = default;
@@ -24,11 +24,11 @@ class Operations {
     return kept_.empty() ? made(static_cast<Eigen::Index>(bin)) : kept_[bin];
   }
 
-  /// D motion of every bin: equations x bins. motion: axes x bins.
+  /// Returns D motion for every bin: equations x bins. motion: axes x bins.
   Eigen::MatrixXcd times(const Eigen::MatrixXcd& motion) const;
-  /// D^H forces of every bin: axes x bins. forces: equations x bins.
+  /// Returns D^H forces for every bin: axes x bins. forces: equations x bins.
   Eigen::MatrixXcd adjoint_times(const Eigen::MatrixXcd& forces) const;
-  /// An axis' column of every bin: equations x bins.
+  /// Returns an axis' column for every bin: equations x bins.
   Eigen::MatrixXcd of_axis(Eigen::Index axis) const;
 
  private:

@@ -14,13 +14,13 @@ using Eigen::VectorXd;
 using Kind = Unknown::Kind;
 
 constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
-/// In a large building only stiffnesses at the law and next to it move its run enough for what
-/// their runs cost.
+/// Returns true if a stiffness is at the law or next to it. In a large building others move the run
+/// too little for the cost of a run.
 bool is_near(const EffectPlace& law, int story, int frame) {
   return law.frame == frame && std::abs(law.story - story) <= 1;
 }
 
-/// The free run with an unknown changed. The modes of a large building stay as they are.
+/// Returns the free run with an unknown changed. Keeps the modes of a large building.
 FreeRun changed_run(const Plant& plant, const Model& model, const RecordSegment& segment,
                     std::size_t record, const Unknown& unknown, double change, int ratio,
                     RunCache* cache) {
@@ -39,7 +39,7 @@ FreeRun changed_run(const Plant& plant, const Model& model, const RecordSegment&
 bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
   if (unknown.kind == Kind::parameter || unknown.kind == Kind::record_parameter) return true;
   const Structure& s = plant.structure;
-  int frame = -1, story = 0;  // none: of all directions
+  int frame = -1, story = 0;  // -1: all directions
   if (unknown.kind == Kind::theta) {
     if (unknown.index >= plant.element_count()) return false;
     frame = plant.table[unknown.index].frame;

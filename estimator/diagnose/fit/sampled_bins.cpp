@@ -9,11 +9,11 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Share of a column's square in a bin, times this, with which the bin is taken for its sake.
+/// Chance of a bin per share of a column's square in it.
 constexpr double kOfEffects = 8;
 
-/// Chances of the bins for the sake of the columns of effects: what a resonance or a harmonic does
-/// lies in few of them.
+/// Returns the chances of the bins from the columns of effects: a resonance or a harmonic acts in
+/// few bins.
 VectorXd chances_of_effects(const Columns& columns, Index rows, Index bins) {
   VectorXd out = VectorXd::Zero(bins);
   for (Index e = 0; e < columns.effects.cols(); ++e) {

@@ -12,10 +12,11 @@ struct SampledBin {
   double weight = 1;
 };
 
-/// The bins whose products make up the curvature of a fit to a large building: about an eighth of
-/// all, those with much motion for certain, the others by their share of it (systematic sampling
-/// with unequal chances, each weighted with the inverse of its own), and those with much of an
-/// effect's column. The curvature only directs steps; gradients and misfits are those of all bins.
+/// Returns the bins whose products make up the curvature of a fit to a large building: about an
+/// eighth of all. Bins with much motion are always included; others are sampled with a chance
+/// proportional to their share of it (systematic sampling, weighted by the inverse chance). Bins
+/// with much of an effect's column are included too. The curvature only directs steps; gradients
+/// and misfits use all bins.
 std::vector<SampledBin> sampled_bins(const Linearised& at, std::size_t record);
 
 }  // namespace framewatch::estimator

@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 constexpr double kArbitrary = 1e6;   ///< variance of an arbitrary signal, over that of noise
-constexpr Index kMinNeighbours = 8;  ///< bins either side over which the misfit is averaged
+constexpr Index kMinNeighbours = 8;  ///< bins on either side over which the misfit is averaged
 
 }  // namespace
 
@@ -39,7 +39,8 @@ VectorXd whiten_axis(const Whitened& s, Index axis, const VectorXcd& signal) {
 
 namespace {
 
-/// bin_noise() with the variance of clipped axes raised: their readings count for nothing.
+/// Returns bin_noise() with the variance of clipped axes raised, so that their readings have no
+/// weight.
 VectorXd believed_noise(const Model& model, const RecordSegment& segment, Index bin) {
   VectorXd out = bin_noise(model, segment, bin);
   for (const ModelEffect& e : model.effects)
@@ -47,7 +48,7 @@ VectorXd believed_noise(const Model& model, const RecordSegment& segment, Index 
   return out;
 }
 
-/// believed_noise() of every bin: axes x bins.
+/// Returns believed_noise() of every bin: axes x bins.
 MatrixXd noise_of(const Model& model, const RecordSegment& segment) {
   MatrixXd out(model.gain.size(), segment.bins());
   for (Index b = 0; b < out.cols(); ++b) out.col(b) = believed_noise(model, segment, b);
@@ -60,8 +61,8 @@ HiddenOscillator hidden_oscillator(const Plant& plant, const ModelEffect& e, con
   return out;
 }
 
-/// The likeliest motion, docs/equations.md (34), with which the gradient is exact. Where the model
-/// does not fit, less of the residual is subtracted: it is not noise.
+/// Returns the likeliest motion, docs/equations.md (34), for which the gradient is exact. If the
+/// model does not fit, it subtracts less of the residual, because the residual is not noise.
 MatrixXcd shown_motion(const Plant& plant, const MatrixXd& noise, const Whitened& system) {
   MatrixXcd out = system.calibrated;
   const Index bins = system.bins(), n = plant.equations(), axes = plant.axis_count();
@@ -93,7 +94,7 @@ void follow_unread(const Plant& plant, const MatrixXcd& forces, const Operations
   }
 }
 
-/// The model's own weights; null where it has none.
+/// Returns the model's weights, or null if they cannot be computed.
 std::shared_ptr<const Weights> weights_of(const Plant& plant, const Model& model,
                                           const RecordSegment& segment, const MatrixXd& noise,
                                           const Operations& operations) {
@@ -116,7 +117,7 @@ std::shared_ptr<const Weights> weights_of(const Plant& plant, const Model& model
                                          all_read ? MatrixXd() : plant.read);
 }
 
-/// Sets what depends on the weights; those of the model where there are none.
+/// Sets everything that depends on the weights. weights: null: compute the model's weights.
 void weigh(const Plant& plant, const Model& model, const RecordSegment& segment,
            std::shared_ptr<const Weights> weights, Whitened& out) {
   const MatrixXd noise = noise_of(model, segment);
@@ -172,7 +173,7 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   for (const ModelEffect& e : model.effects) {
     if (e.element_law() || e.form == LawForm::modal_damping || e.form == LawForm::broadband)
       continue;
-    // A force from outside is on the other side of the equation.
+    // An external force is on the other side of the equation.
     if (e.form == LawForm::harmonic)
       out.forces -= node_direction(plant, e.place.story, e.place.frame) *
                     harmonic_bins(e, segment, record).transpose();

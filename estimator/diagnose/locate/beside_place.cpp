@@ -19,9 +19,9 @@ constexpr int kTimesBeside = 3, kStepsBeside = 6, kTimesCells = 10;
 constexpr double kSameCorner = 0.15;  ///< relative difference
 constexpr double kNoiseBeside = 2;    ///< spread_of() of noise
 constexpr double kOutlier = 3;        ///< standard deviations of a cell of noise
-constexpr double kMaxCells = 0.6;     ///< that are noise at least
+constexpr double kMaxCells = 0.6;     ///< smallest share of cells that are noise
 
-/// What is left beside arbitrary signals at a place.
+/// Returns the residual with arbitrary signals at a place, in cells.
 std::vector<NoiseCell> cells_beside(const Fitter& fitter, const Localisation& place) {
   std::vector<NoiseCell> out;
   const std::vector<Whitened> systems =
@@ -47,7 +47,7 @@ std::vector<NoiseCell> cells_beside(const Fitter& fitter, const Localisation& pl
   return out;
 }
 
-/// The corner of most of the cells; `cells` becomes these.
+/// Returns the corner frequency of most of the cells. Removes the other cells from `cells`.
 double corner_of_most(std::vector<NoiseCell>& cells) {
   const std::vector<NoiseCell> all = cells;
   double corner_hz = likeliest_corner_hz(cells);

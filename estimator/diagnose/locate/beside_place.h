@@ -6,9 +6,9 @@
 
 namespace framewatch::estimator {
 
-/// The colour of the noise (RecordSegment::corner_hz) by what is left where anything may act at a
-/// place: that of most of the frequencies, the others have something else that is missing. Sets it
-/// in the segments, which are those of the fitter; whether it changed.
+/// Estimates the corner frequency of the noise (RecordSegment::corner_hz) from the residual with
+/// arbitrary signals at a place. Uses most of the cells; in the others some effect is still
+/// missing. Sets it in `segments`, which are those of the fitter. Returns true if it changed.
 bool colour_beside(const Fitter& fitter, std::vector<RecordSegment>& segments,
                    const Localisation& place);
 

@@ -71,7 +71,7 @@ void BinCurvature::put_forces(Index bin, const RowMatrix& steps) {
 void BinCurvature::put_under_metric() {
   const Index n = forces_.real.rows(), width = forces_.real.cols();
   RowMatrix metric(2 * n, n), forces = RowMatrix::Zero(n, padded(static_cast<int>(2 * width))), out;
-  // The metric is Hermitian: its columns lie together in memory.
+  // The metric is Hermitian, and its columns are contiguous in memory.
   for (Index i = 0; i < n; ++i) {
     metric.row(i) = products_.metric().col(i).real().transpose();
     metric.row(n + i) = -products_.metric().col(i).imag().transpose();

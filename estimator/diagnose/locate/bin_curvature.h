@@ -10,15 +10,15 @@
 
 namespace framewatch::estimator {
 
-/// The curvature of the misfit by the unknowns `kept` beside arbitrary signals at the places of
-/// each of several lists, times a step for each list; bin by bin, no curvature is ever formed.
+/// Curvature of the misfit by the unknowns `kept`, with arbitrary signals at the places of each of
+/// several lists. Multiplies it by one step for each list, bin by bin, without forming it.
 class BinCurvature {
  public:
-  /// What is given has to stay.
+  /// The arguments must outlive the object.
   BinCurvature(const Linearised& at, std::size_t record, const std::vector<Eigen::Index>& kept,
                const std::vector<std::vector<CandidatePlace>>& lists);
 
-  /// sum += curvature of the bin times steps; both unknowns x lists.
+  /// Adds the curvature of the bin times the steps to `sum`; both are unknowns x lists.
   void add_times(Eigen::Index bin, const RowMatrix& steps, RowMatrix& sum);
 
  private:
@@ -27,13 +27,13 @@ class BinCurvature {
     RowMatrix real, imaginary;
   };
 
-  /// The forces of the steps on the equations: equations x lists.
+  /// Computes the forces of the steps on the equations: equations x lists.
   void put_forces(Eigen::Index bin, const RowMatrix& steps);
-  /// They under the metric, without what the lists' places may make of them.
+  /// Multiplies the forces by the metric and projects out the directions of the lists' places.
   void put_under_metric();
-  /// The products of these with every direction.
+  /// Computes the products of the result with every direction.
   void put_along();
-  /// The forces that a column without a direction stands for in a bin.
+  /// Returns the forces of a column without a direction in a bin.
   Eigen::VectorXcd effect_force(Eigen::Index bin, Eigen::Index unknown) const;
 
   const Whitened& system_;

@@ -20,14 +20,15 @@ bool same_direction(const MatrixXd& a, const MatrixXd& b) {
   return cosine > 1 - 1e-9;
 }
 
-/// Whether the axes read most of a motion.
+/// Returns true if the axes read most of a motion.
 bool is_read(const Plant& plant, const VectorXd& motion) {
   constexpr double kMax = 0.5;
   return plant.unread.cols() == 0 ||
          (plant.read.transpose() * motion).squaredNorm() > kMax * motion.squaredNorm();
 }
 
-/// Whether an element shares its factors with others: its own force cannot be told from theirs.
+/// Returns true if an element shares its factors with others: its force cannot be separated from
+/// theirs.
 bool is_tied(const Plant& plant, int element) {
   return !plant.groups.empty() &&
          std::none_of(plant.groups.begin(), plant.groups.end(), [&](const TiedStories& group) {
@@ -42,7 +43,8 @@ void add_forces(std::vector<CandidatePlace>& out, CandidatePlace candidate_place
   out.push_back(std::move(candidate_place));
 }
 
-/// Forces of a rotation of the base, through the stiffnesses of the frames in one direction.
+/// Returns the forces of a rotation of the base, through the stiffnesses of the frames in one
+/// direction.
 MatrixXd moment_of(const Plant& plant, const Model& model, Direction direction) {
   const Structure& s = plant.structure;
   MatrixXd out = MatrixXd::Zero(plant.equations(), 1);
@@ -95,7 +97,8 @@ void add_elements(const Plant& plant, std::vector<CandidatePlace>& out) {
   }
 }
 
-/// Forces on every frame at every floor, and pairs of them between floors that are not neighbours.
+/// Adds forces on every frame at every floor, and pairs of them between floors that are not
+/// adjacent.
 void add_nodes_and_links(const Plant& plant, std::vector<CandidatePlace>& out) {
   const Structure& s = plant.structure;
   for (int story = 1; story <= s.stories; ++story)
@@ -162,7 +165,7 @@ void update_directions(const Plant& plant, const Model& model,
 
 std::vector<CandidatePlace> candidate_places_of(const Plant& plant, const Model& model) {
   std::vector<CandidatePlace> out;
-  // With one equation an error of a reading cannot be told from a force.
+  // With one equation, an error of a reading is indistinguishable from a force.
   if (plant.equations() > 1) out = axes_of(plant);
   if (plant.stiff_floors) add_floors(plant, out);
   add_elements(plant, out);

@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 constexpr int kIterations = 4;
 
-/// Curvature times x, a column a list, the signals of its places free.
+/// Returns the curvature times x, one column per list, with the signals of its places free.
 MatrixXd curvature_times(const Linearised& at, const std::vector<Index>& kept,
                          const std::vector<std::vector<CandidatePlace>>& lists, const MatrixXd& x) {
   const RowMatrix steps = x;

@@ -10,15 +10,15 @@
 
 namespace framewatch::estimator {
 
-/// One step of the fit beside arbitrary signals, with the curvature of all bins.
+/// One step of a fit with arbitrary signals, using the curvature of all bins.
 struct CloserLook {
   Eigen::VectorXd step;  ///< of the unknowns `kept`
-  double left = 0;       ///< misfit after it, as the linearised equations have it
+  double left = 0;       ///< misfit after the step, by the linearised equations
 };
 
-/// Of a large building, for each list of places: the step by conjugate gradients, with the list's
-/// own normal equations from sampled bins (without_sampled) to start and to direct it.
-/// equations: of each list, of all segments, their gradients and misfits those of all bins.
+/// Computes for each list of places in a large building one step by conjugate gradients. The list's
+/// normal equations from sampled bins (without_sampled) are the start and the preconditioner.
+/// equations: of each list, summed over segments; their gradients and misfits include all bins.
 std::vector<CloserLook> closer_looks(const Linearised& at, const std::vector<Eigen::Index>& kept,
                                      const std::vector<std::vector<CandidatePlace>>& lists,
                                      const std::vector<NormalEquations>& equations);

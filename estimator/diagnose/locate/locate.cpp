@@ -9,9 +9,10 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
-constexpr std::size_t kSingle = 3;     ///< of places of one direction, iterated too
-constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
+constexpr std::size_t kPlaces = 5;  ///< always iterated, of any kind
+constexpr std::size_t kSingle = 3;  ///< further places with one direction that are iterated
+constexpr std::size_t kOfOneKind =
+    2;  ///< further places of the building or a floor that are iterated
 constexpr std::size_t kContenders = 3, kMaxContenders = 5;
 constexpr std::size_t kMaxAsLikely = 16;
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
@@ -20,26 +21,27 @@ constexpr std::size_t kMaxOfPairs = 150;  ///< places of a large building, best 
 constexpr int kSteps = 8, kPairSteps = 6;
 constexpr int kTrialSteps = 3;     ///< before the ratios are compared
 constexpr double kMinNoise = 0.5;  ///< ratio that noise alone may have
-constexpr double kHardly = 0.5;    ///< of what chance may leave
-constexpr double kWideMargin = 2;  ///< times the margin: places above it then are not iterated on
+constexpr double kHardly = 0.5;    ///< of the chance level
+constexpr double kWideMargin =
+    2;  ///< times the margin: places above it after the first steps are dropped
 
 void sort_by_ratio(std::vector<Localisation>& list) {
   std::stable_sort(list.begin(), list.end(),
                    [](const Localisation& a, const Localisation& b) { return a.ratio < b.ratio; });
 }
 
-/// Ratio above which a place is too far from the best to be tried.
+/// Returns the ratio above which a place is too far from the best to be tried.
 double margin_of(const Localisation& best) {
   return 1 + 2 * std::max(best.ratio - 1, 0.05) + 0.1;
 }
 
-/// The same for places that have not converged.
+/// Returns that ratio for places that have not converged.
 double wide_margin_of(const Localisation& best) {
   return 1 + kWideMargin * (margin_of(best) - 1);
 }
 
-/// Iterates localisations from their first step. Those whose ratio after a few steps exceeds the
-/// limit, a function of the best, are not iterated on.
+/// Iterates localizations from their first step. Stops those whose ratio after a few steps exceeds
+/// limit_of(best).
 std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
                                    const std::vector<const Localisation*>& starts, int steps,
                                    const std::function<double(const Localisation&)>& limit_of,
@@ -75,7 +77,8 @@ std::vector<CandidatePlace> of_one_direction(const std::vector<Localisation>& on
   return out;
 }
 
-/// Localisations of all lists after one step, best first; empty when the model cannot be computed.
+/// Returns localizations of all lists after one step, best first; empty if the model cannot be
+/// computed.
 std::vector<Localisation> one_step(const Fitter& fitter, const FitResult& now,
                                    const std::vector<std::vector<CandidatePlace>>& lists,
                                    const Parallel& parallel) {
@@ -87,7 +90,7 @@ std::vector<Localisation> one_step(const Fitter& fitter, const FitResult& now,
   return out;
 }
 
-/// The best lists after one step, iterated. Best first.
+/// Returns the best lists after one step, iterated, best first.
 std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
                                      const std::vector<std::vector<CandidatePlace>>& lists,
                                      const Parallel& parallel) {
@@ -97,7 +100,8 @@ std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
   return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
 }
 
-/// Whether far less than chance is left for the likeliest place: near the noise one step tells it.
+/// Returns true if the likeliest place explains far less than chance. Near the noise, one step
+/// suffices to know.
 bool leaves_nothing(const Fitter& fitter, const FitResult& now,
                     const std::vector<Localisation>& once) {
   if (once.empty()) return true;
@@ -127,7 +131,7 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
   const bool nothing = leaves_nothing(fitter, now, out.once);
   for (std::size_t i = 0; i < out.once.size(); ++i) {
     const CandidatePlace& place = out.once[i].candidate_places.front();
-    // Of a large building, both directions of its masses come before either of them.
+    // In a large building, both directions of a mass rank above either direction alone.
     const bool alone = fitter.plant().is_large() && place.size() == 1 && single < kSingle;
     const bool more = (is_global(place) && global < kOfOneKind) || alone;
     if (i >= kPlaces && !more) continue;
@@ -146,7 +150,7 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
   std::vector<CandidatePlace> all = of_one_direction(once);
   if (fitter.plant().is_large() && all.size() > kMaxOfPairs) all.resize(kMaxOfPairs);
   std::vector<std::vector<CandidatePlace>> lists;
-  // Two exchanged axes stand out among the axes, each for itself.
+  // Two exchanged axes rank high among the axes, each by itself.
   std::vector<char> leading_axis(all.size(), 0);
   std::size_t axes = 0;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -192,8 +196,8 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   std::vector<Localisation> out;
   std::map<CandidatePlace::Kind, int> of_kind;
   if (places.empty()) return out;
-  // Both directions of a mass take more of what nothing explains than one of them, in which the
-  // cause may be.
+  // Two directions of a mass explain more of an unexplained misfit than the one direction where the
+  // cause may act.
   const auto single = std::find_if(places.begin(), places.end(), [](const Localisation& place) {
     return place.candidate_places.front().size() == 1;
   });
@@ -202,7 +206,7 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   for (const Localisation& place : places) {
     const bool alone = apart && place.candidate_places.front().size() == 1;
     const double limit = margin_of(alone ? *single : places.front());
-    // Bending frames are located by a moment at the base, which explains only a part of them.
+    // Bending frames are located by a moment at the base, which explains only part of them.
     const bool moment = place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
     if (place.ratio > (moment ? wide : limit)) continue;
     const bool another_kind = of_kind[place.candidate_places.front().kind]++ == 0;

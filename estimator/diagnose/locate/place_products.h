@@ -9,16 +9,16 @@
 
 namespace framewatch::estimator {
 
-/// Products of the orthonormal directions of a list of places, whitened, with the columns and with
-/// unit forces on the equations; directions x either.
+/// Products of the orthonormal whitened directions of a list of places with the columns, and with
+/// unit forces on the equations: directions x columns or equations.
 struct PlaceProducts {
   Eigen::MatrixXcd columns, equations;
 };
 
-/// products: of the bin that they were computed for.
+/// Computes both. products: of the bin of its last compute().
 PlaceProducts place_products(const BinProducts& products,
                              const std::vector<CandidatePlace>& places);
-/// Those with unit forces alone, which need no more than BinProducts::put_metric().
+/// Computes the products with unit forces only, which need only BinProducts::put_metric().
 Eigen::MatrixXcd place_equations(const BinProducts& products,
                                  const std::vector<CandidatePlace>& places);
 

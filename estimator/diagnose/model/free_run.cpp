@@ -18,18 +18,19 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kStepsPerPeriod = 30;
-constexpr int kFewestSteps = 2, kMaxSteps = 12;  ///< a sample
-constexpr int kContactSteps = 4;     ///< in place of one: contacts come and go within it
-constexpr int kPrescribedSteps = 6;  ///< a sample: corners of laws lie between samples
+constexpr int kFewestSteps = 2, kMaxSteps = 12;  ///< per sample
+constexpr int kContactSteps =
+    4;  ///< for each step without contacts: contacts open and close within a step
+constexpr int kPrescribedSteps = 6;  ///< per sample: corners of laws lie between samples
 constexpr double kDiverged_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
 constexpr int kGrows = 60, kIllinois = 60;
 constexpr double kRootPart = 1e-9, kMinForce_n = 1e-12;
-/// Of the slopes that are remembered: steps by steeper ones are too short where a law becomes soft.
+/// Bounds of stored slopes: steps by steeper slopes are too short if a law softens.
 constexpr double kSteepest = -2, kFlattest = -0.5;
 
-/// Root of `miss` near `start`. slope: of `miss` about there, set to what it was found to be. Where
-/// the law does not soften it falls by at least one per unit.
+/// Finds the root of `miss` near `start`. slope: of `miss` near the root; updated. `miss` falls by
+/// at least one per unit unless the law softens.
 template <typename Miss>
 double root_near(const Miss& miss, double start, double& slope) {
   double before = start, value_before = miss(before);
@@ -68,7 +69,7 @@ std::vector<Index> driving_axes(const Plant& plant) {
   return out;
 }
 
-/// The forces of a model's effects during a run: those of harmonic forces are known beforehand,
+/// The forces of a model's effects during a run. Those of harmonic forces are known in advance;
 /// those of element laws and springs depend on the motion at the end of the step.
 class RunForces {
  public:
@@ -103,7 +104,7 @@ class RunForces {
 
   std::size_t laws() const { return laws_.size(); }
 
-  /// Harmonic forces at time t.
+  /// Sets the harmonic forces at time t.
   void set_harmonics(double t, VectorXd& inputs) const {
     for (const auto& [e, at] : harmonics_) {
       const double phase = 2 * M_PI * e->parameters[0].plain() * t;
@@ -113,7 +114,7 @@ class RunForces {
     }
   }
 
-  /// Forces of the laws at the end of a step that `system` has predicted.
+  /// Solves for the forces of the laws at the end of a step that `system` has predicted.
   void solve_laws(const ModalSystem& system, double t, VectorXd& inputs) {
     const int sweeps = laws_.size() > 1 ? kSweeps : 1;
     for (RunLaw& law : laws_) law.before = std::exchange(law.force, 2 * law.force - law.before);
@@ -129,7 +130,7 @@ class RunForces {
     }
   }
 
-  /// Ends the step. false: the motion has diverged.
+  /// Ends the step. Returns false if the motion has diverged.
   bool accept(std::size_t law, double t) {
     laws_[law].motion.accept(at_step_[law].d, at_step_[law].v, t);
     return std::abs(at_step_[law].d) < kDiverged_m;
@@ -146,8 +147,8 @@ class RunForces {
     LawMotion motion;
     ModalSystem::Observer seen;
     Index input;
-    double force = 0, before = 0;  ///< at the end of this step and of the one before
-    double slope = -1;             ///< of what solve() brings to zero
+    double force = 0, before = 0;  ///< at the end of this step and of the previous one
+    double slope = -1;             ///< of the miss in solve()
   };
   struct RunSpring {
     double stiffness;
@@ -158,7 +159,7 @@ class RunForces {
     double d, v;
   };
 
-  /// Force of one law, the forces of the others held.
+  /// Solves for the force of one law with the forces of the others held.
   void solve(const ModalSystem& system, std::size_t l, double t) {
     RunLaw& law = laws_[l];
     double d = system.displacement(law.seen), v = system.velocity(law.seen);
@@ -169,7 +170,7 @@ class RunForces {
     }
     const double gd = law.seen.displacement_gain[law.input];
     const double gv = law.seen.velocity_gain[law.input];
-    // f = F(d + gd f, v + gv f): gd, gv < 0, F rises, so the root is bracketed.
+    // f = F(d + gd f, v + gv f): gd, gv < 0 and F rises, so the root is bracketed.
     const auto miss = [&](double f) { return law.motion.force(d + gd * f, v + gv * f, t) - f; };
     law.force = root_near(miss, law.force, law.slope);
     at_step_[l] = {d + gd * law.force, v + gv * law.force};

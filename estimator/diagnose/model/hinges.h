@@ -6,13 +6,14 @@
 
 namespace framewatch::estimator {
 
-/// Moments of the rotation of the base (LawForm::rocking) or of every floor of every frame
-/// (bending) per force of the elements: rotations x elements, m, times the root of a rotation's
-/// flexibility over that at the base where the design says it.
+/// Returns the moments of rotations per force of the elements: rotations x elements, m. The
+/// rotations are of the base (LawForm::rocking), or of every floor of every frame (bending). For
+/// bending, each row is scaled by the root of that rotation's flexibility over the one at the base,
+/// if the design has bending.
 Eigen::MatrixXd hinges(const Plant& plant, const ModelEffect& effect);
 
-/// What rotations change of the elements' stiffness and damping: elements x elements, added to the
-/// diagonal ones.
+/// Change of the elements' stiffness and damping by rotations: elements x elements, to be added to
+/// the diagonal matrices.
 struct HingedElements {
   Eigen::MatrixXd stiffness, damping;
 };

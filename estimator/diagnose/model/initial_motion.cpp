@@ -16,9 +16,9 @@ using Eigen::VectorXd;
 
 constexpr Index kFewestSamples = 64;
 constexpr double kTaper = 0.05;    ///< of the record, at either end
-constexpr Index kFirstShare = 20;  ///< of the lead, 1 over it: where it begins
+constexpr Index kFirstShare = 20;  ///< the lead begins with its first 1/20
 constexpr double kMoving = 0.1;
-constexpr Index kOfLead = 4;  ///< the lead's share before the initial instant, 1 over it
+constexpr Index kOfLead = 4;  ///< the initial instant lies a quarter into the lead
 
 double taper(Index i, Index size) {
   const double edge = kTaper * static_cast<double>(size);
@@ -26,7 +26,8 @@ double taper(Index i, Index size) {
   return at < 1 ? 0.5 - 0.5 * std::cos(M_PI * at) : 1.0;
 }
 
-/// Whether the floors move at the begin: rms of the readings there over that of the lead.
+/// Returns true if the floors move at the start: compares the rms of the readings there with that
+/// of the whole lead.
 bool begins_in_motion(const Plant& plant, const RecordSegment& segment) {
   const Index first = std::max<Index>(1, segment.lead.rows() / kFirstShare);
   double begin = 0, all = 0;

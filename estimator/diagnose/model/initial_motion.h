@@ -15,9 +15,9 @@ struct InitialMotion {
   Eigen::VectorXd displacement, velocity;  ///< m, m/s
 };
 
-/// As measured: readings integrated within the segment's band, a quarter of the lead after its
-/// begin, so that a record that begins in motion need not be simulated from rest. Empty without a
-/// lead, and where it begins at rest: then a run from rest is exact.
+/// Returns the measured motion a quarter into the lead, so that a record that begins in motion need
+/// not be simulated from rest. Integrates the readings within the segment's band. Returns nullopt
+/// if there is no lead, or if the lead begins at rest: a run from rest is then exact.
 std::optional<InitialMotion> initial_motion(const Plant& plant, const Model& model,
                                             const RecordSegment& segment);
 

@@ -40,7 +40,7 @@ std::optional<Plant> make_plant(const Structure& structure, const std::vector<Se
                                 const BendingStiffness& bending) {
   const ParameterTable table(structure);
   const double highest_hz = natural_frequencies_hz(structure, table, design).back();
-  const bool at_places =  // verticals are
+  const bool at_places =  // vertical axes have one
       std::any_of(axes.begin(), axes.end(), [](const SensorAxis& a) { return a.plan.has_value(); });
   const auto partial = [&] {
     auto out = partial_plant(structure, axes, design, bending, rate_hz);

@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A basis of motions as columns of all coordinates, one floor's after the other's.
+/// A basis of motions as columns over all coordinates, floor by floor.
 class Motions {
  public:
   explicit Motions(Index coordinates) : coordinates_(coordinates) {}
@@ -37,7 +37,7 @@ class Motions {
   std::vector<VectorXd> columns_;
 };
 
-/// Of the building's coordinates: what the axes read of them, and motions that they do not read.
+/// The building's coordinates as read by the axes, and the motions that the axes do not read.
 struct ReadMotion {
   MatrixXd of_axes;  ///< coordinates x axes
   MatrixXd read, unread;
@@ -53,7 +53,7 @@ ReadMotion read_motion(const Structure& s, const std::vector<SensorAxis>& axes,
     const FloorCoordinates floor = floor_coordinates(s, axes, all, story);
     const Index count = floor.frames.cols(), measured = floor.measured;
     const MatrixXd own = constraint.block(s.dof(story, 0), first, s.frames(), count);
-    MatrixXd change(count, count);  // the building's coordinates by the floor's
+    MatrixXd change(count, count);  // from the floor's coordinates to the building's
     const LeastSquares solver(own);
     for (Index c = 0; c < count; ++c) change.col(c) = solver.solve(VectorXd(floor.frames.col(c)));
     out.of_axes.middleRows(first, count) = change.leftCols(measured) * floor.from_axes;
@@ -85,7 +85,8 @@ std::vector<TiedStories> tied_stories(const Structure& s, const std::vector<Sens
   return out;
 }
 
-/// Directions of the measured forces on the equations, with opposite signs (Plant::push).
+/// Returns the directions of the measured forces on the equations, with opposite signs
+/// (Plant::push).
 MatrixXd pushed(const Structure& s, const std::vector<SensorAxis>& axes, const MatrixXd& constraint,
                 Index columns) {
   MatrixXd out = MatrixXd::Zero(constraint.cols(), columns);

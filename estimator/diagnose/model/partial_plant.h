@@ -9,10 +9,10 @@
 
 namespace framewatch::estimator {
 
-/// The plant of a building with axes on some floors or at places in plan, and with measured forces:
-/// what they do not read is Plant::unread, stories between measured floors are tied
-/// (story_groups()). design: theta order of `structure`. Empty where the base is not measured in a
-/// direction that is measured above it.
+/// Returns the plant of a building whose axes cover some floors, have places in plan, or measure
+/// forces. Unread motions become Plant::unread, and stories between measured floors are tied
+/// (story_groups()). design: theta order of `structure`. Returns nullopt if a direction is measured
+/// above the base but not at the base.
 std::optional<Plant> partial_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
                                    const Eigen::VectorXd& design, const BendingStiffness& bending,
                                    double rate_hz);

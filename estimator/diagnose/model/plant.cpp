@@ -22,7 +22,7 @@ Plant::Plant(const Structure& s, const std::vector<SensorAxis>& sensors, VectorX
   motion = mass.cwiseInverse().asDiagonal() * building.mass;
   push = MatrixXd::Zero(building.equations(), building.axes());
   ground = MatrixXd::Zero(s.degrees_of_freedom(), building.axes());
-  // Of every story upward: a base that rocks moves a floor the more the higher it lies.
+  // Sums from story to story: a rocking base moves higher floors more.
   for (int story = 1; story <= s.stories; ++story)
     for (int f = 0; f < s.frames(); ++f) {
       const int at = table.frame_stiffness(story, f);

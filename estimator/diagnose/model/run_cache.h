@@ -14,17 +14,17 @@
 
 namespace framewatch::estimator {
 
-/// What free runs have in common whose models differ in their laws alone: the modes of the linear
-/// building, which in a large one take longer than the run, and the driving signals. Results are
-/// those without it.
+/// Caches what free runs share if their models differ only in laws: the modes of the linear
+/// building, which take longer than the run in a large building, and the driving signals. Results
+/// do not depend on it.
 class RunCache {
  public:
-  /// At rest, steps of step_s; those of the last parts are kept.
+  /// Returns the modes at rest, for steps of step_s. Caches those of the last parts.
   const ModalSystem& modes(const RunSystem& parts, double step_s);
-  /// How often modes were computed.
+  /// Returns how often modes were computed.
   int computed() const { return computed_; }
-  /// Readings of the driving axes of a record at every step, the lead first, without the model's
-  /// errors of gain and clock: axes x steps; those of the last such errors are kept.
+  /// Returns the readings of a record's driving axes at every step, the lead first, corrected for
+  /// the model's gains and clocks: axes x steps. Caches the signals of the last gains and clocks.
   const Eigen::MatrixXd& driving(const Model& model, const RecordSegment& segment,
                                  std::size_t record, const std::vector<Eigen::Index>& axes,
                                  int ratio);

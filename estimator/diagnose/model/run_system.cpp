@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kMinMass_kg = 1e-9;  ///< of a resonator: its equation needs one
+constexpr double kMinMass_kg = 1e-9;  ///< of a resonator: its equation needs a mass
 
 /// at: coordinate of the resonator's mass.
 void add_resonator(const Plant& plant, const ModelEffect& e, Index at, RunSystem& out) {
@@ -44,7 +44,8 @@ void add_panels(const Plant& plant, const Model& model, const ModelEffect& e, Ru
   }
 }
 
-/// Rotation of the base or of the frames: constant matrices, read off the operation at 1 rad/s.
+/// Adds a rotation of the base or of the frames: constant matrices, taken from the operation at 1
+/// rad/s.
 void add_rotation(const Plant& plant, const Model& model, const ModelEffect& e, RunSystem& out) {
   const Index n = plant.equations();
   const Eigen::MatrixXcd change = LinearOperation(plant, model, e).at(1.0);
@@ -53,7 +54,7 @@ void add_rotation(const Plant& plant, const Model& model, const ModelEffect& e, 
   out.damping.topLeftCorner(n, n) -= (change * back.cast<std::complex<double>>()).imag();
 }
 
-/// A linear effect that has no coordinate of its own.
+/// Adds a linear effect without a separate coordinate.
 void add_linear_effect(const Plant& plant, const Model& model, const ModelEffect& e,
                        RunSystem& out) {
   const Index n = plant.equations();
@@ -75,7 +76,8 @@ void add_linear_effect(const Plant& plant, const Model& model, const ModelEffect
   }
 }
 
-/// Inputs of the driving axes: inertia forces of the base's motion, or the measured force itself.
+/// Sets the inputs of the driving axes: inertia forces of the base's motion, or the measured force
+/// itself.
 void set_driving_inputs(const Plant& plant, const Model& model, const std::vector<Index>& driving,
                         RunSystem& out) {
   const Index n = plant.equations();
@@ -101,7 +103,8 @@ void set_driving_inputs(const Plant& plant, const Model& model, const std::vecto
   }
 }
 
-/// Inertia forces of the resonators under the base's motion, and the inputs of the effects' forces.
+/// Sets the inertia forces of the resonators under the base's motion, and the inputs of the
+/// effects' forces.
 void set_effect_inputs(const Plant& plant, const Model& model, const std::vector<Index>& driving,
                        RunSystem& out) {
   const Index n = plant.equations();

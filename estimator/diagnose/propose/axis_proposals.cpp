@@ -33,7 +33,7 @@ void add_axis_proposals(const Fitter& fitter, const Localisation& place,
   const Plant& plant = fitter.plant();
   const int axis = place.candidate_places.front().axis;
   const EffectPlace here = place.candidate_places.front().place;
-  // The reading that the axis should have, from all others.
+  // Estimates the reading that the axis should have from all other axes.
   double own = 0, cross = 0, late = 0, late_weight = 0;
   std::vector<MatrixXcd> truth(place.motion.size());
   for (std::size_t r = 0; r < place.motion.size(); ++r) {

@@ -7,7 +7,7 @@
 
 namespace framewatch::estimator {
 
-/// Adds the errors that the axis of a localisation may have: gain or polarity, delay, misalignment,
+/// Adds the possible errors of the axis of a localization: gain or polarity, delay, misalignment,
 /// clipping.
 void add_axis_proposals(const Fitter& fitter, const Localisation& place,
                         std::vector<Proposal>& out);

@@ -13,9 +13,10 @@ namespace {
 
 using Eigen::VectorXcd;
 
-constexpr std::size_t kMaxFrames = 4;  ///< whole frames that are tried in one direction
+constexpr std::size_t kMaxFrames = 4;  ///< whole frames to try in one direction
 constexpr double kFirstShare = 0.05;   ///< of the stiffness that a start takes at the peak
-/// Exponents that softening starts from: of the squared deformation, and soonest at the smallest.
+/// Start exponents of softening: with the squared deformation, and fastest at the smallest
+/// deformations.
 constexpr double kSoftens = 2, kSoftensSooner = 1.3;
 
 MeasuredDeformation motion_of(const Fitter& fitter, const Localisation& place, const LawPort& port,

@@ -73,7 +73,8 @@ class ElementProposals {
     return p;
   }
 
-  /// The family with the best of its starts; empty where none may be.
+  /// Returns the family with the best of its starts, or nullopt if none has an admissible
+  /// amplitude.
   std::optional<Proposal> best(const LawStarts& family) const {
     ScalarFit least;
     ModelEffect chosen;

@@ -7,7 +7,7 @@
 
 namespace framewatch::estimator {
 
-/// Every law that an element can have, each with the best of a grid of start values.
+/// Returns every law that can act in an element, each with the best of a grid of start values.
 /// element: index of its stiffness in theta.
 std::vector<Proposal> element_proposals(const Fitter& fitter, const Localisation& place,
                                         const std::vector<NeededSignal>& needed, int element);

@@ -15,23 +15,23 @@ using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr Index kLineBins = 4;       ///< either side of a line
+constexpr Index kLineBins = 4;       ///< on either side of a line
 constexpr Index kFewestBins = 5;     ///< at an edge of the band
 constexpr double kHzStep = 0.2;      ///< over the record's length
 constexpr double kOnsetStep = 0.01;  ///< of the record
-constexpr double kFineStep = 5e-4;   ///< likewise
+constexpr double kFineStep = 5e-4;   ///< of the record
 constexpr double kLatestOnset = 0.6;
-constexpr std::size_t kLines = 4;  ///< of a force, that are fitted beside a linear element
+constexpr std::size_t kLines = 4;  ///< of a force, to be fitted with a linear element
 constexpr int kNear = 4;           ///< steps of a frequency to either side of a line's bin
 
-/// Sum of exp(j angle i) over n samples.
+/// Returns the sum of exp(j angle i) over n samples.
 Complex geometric(double angle, double n) {
   const Complex q = std::polar(1.0, angle);
   return std::abs(q - 1.0) < 1e-9 ? Complex(n) : (std::polar(1.0, angle * n) - 1.0) / (q - 1.0);
 }
 
-/// By how much a cosine and a sine of one frequency, as long as the record, reduce the misfit in
-/// the bins around it.
+/// Returns the reduction of the misfit around a frequency by a cosine and a sine as long as the
+/// record.
 double line_gain(const RecordSegment& s, const VectorXcd& force, const VectorXd& weights,
                  double hz) {
   const double step = s.w[1] - s.w[0];
@@ -59,7 +59,7 @@ double line_gain(const RecordSegment& s, const VectorXcd& force, const VectorXd&
   return (part.weight.array() * part.force.array().abs2()).sum() - fit.misfit;
 }
 
-/// The frequency whose line reduces the misfit of all records most; 0 when none does.
+/// Returns the frequency whose line reduces the misfit of all records most; 0 if no line does.
 double strongest_line_hz(const Fitter& fitter, const std::vector<NeededSignal>& needed) {
   const Band band = fit_band(fitter);
   double best_gain = 0, best_hz = 0;
@@ -84,7 +84,7 @@ struct OnsetFit {
   double onset_s = 0;
 };
 
-/// Scalar fit of a harmonic force from an onset on, together with a linear element.
+/// Fits a harmonic force from an onset on, together with a linear element.
 ScalarFit fit_from(const RecordSegment& s, const NeededSignal& needed, double hz, double onset_s) {
   VectorXd c(s.intervals()), q(s.intervals());
   for (Index i = 0; i < c.size(); ++i) {
@@ -92,14 +92,15 @@ ScalarFit fit_from(const RecordSegment& s, const NeededSignal& needed, double hz
     c[i] = t < onset_s ? 0 : std::cos(2 * M_PI * hz * t);
     q[i] = t < onset_s ? 0 : std::sin(2 * M_PI * hz * t);
   }
-  // The needed force is a restoring force; a force from outside has the other sign.
+  // The needed force is a restoring force; an external force has the opposite sign.
   std::vector<VectorXcd> columns{-band_of(c, s, 1), -band_of(q, s, 1)};
   if (needed.d.size() > 0)
     for (VectorXcd& column : linear_columns(needed, s.w)) columns.push_back(std::move(column));
   return scalar_fit({needed}, {columns});
 }
 
-/// The onset that fits one record best, on a coarse grid, then on a fine one around its best.
+/// Returns the onset that fits one record best, on a coarse grid, then on a fine one around its
+/// best.
 OnsetFit best_onset(const RecordSegment& s, const NeededSignal& needed, double hz) {
   OnsetFit best;
   const auto try_onset = [&](double onset_s) {
@@ -113,7 +114,7 @@ OnsetFit best_onset(const RecordSegment& s, const NeededSignal& needed, double h
   return best;
 }
 
-/// Misfit of all records with a line from their begin beside a linear element.
+/// Returns the misfit of all records with a line from their start and a linear element.
 double misfit_with_line(const Fitter& fitter, const std::vector<NeededSignal>& needed, double hz) {
   double out = 0;
   for (std::size_t r = 0; r < needed.size(); ++r)
@@ -121,8 +122,8 @@ double misfit_with_line(const Fitter& fitter, const std::vector<NeededSignal>& n
   return out;
 }
 
-/// Frequencies of the strongest lines of the force itself: most of the motion may be theirs, and
-/// what a linear element takes of the force then takes the line.
+/// Returns the frequencies of the strongest lines of the whole force. If the line causes most of
+/// the motion, a linear element would explain the line.
 std::vector<double> lines_of_force_hz(const RecordSegment& s, const NeededSignal& needed) {
   const VectorXd power = needed.weight.array() * needed.force.array().abs2();
   std::vector<Index> peaks;
@@ -135,7 +136,8 @@ std::vector<double> lines_of_force_hz(const RecordSegment& s, const NeededSignal
   return out;
 }
 
-/// The better of the strongest line beyond a linear element and of one fitted beside it.
+/// Returns the better of the strongest line beyond a linear element and of a line fitted together
+/// with one.
 double line_hz(const Fitter& fitter, const std::vector<NeededSignal>& needed) {
   double best_hz = strongest_line_hz(fitter, needed);
   double least = misfit_with_line(fitter, needed, best_hz);

@@ -7,8 +7,8 @@
 
 namespace framewatch::estimator {
 
-/// A harmonic force from outside at a node: the frequency that stands out most in the needed force,
-/// and its onset and two amplitudes in every record.
+/// Returns an external harmonic force at a node: the strongest frequency in the needed force, and
+/// its onset and two amplitudes in every record.
 Proposal harmonic_proposal(const Fitter& fitter, const Localisation& place,
                            const std::vector<NeededSignal>& needed, const EffectPlace& node);
 

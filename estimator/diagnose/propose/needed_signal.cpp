@@ -18,14 +18,14 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// weighted: roots of the weights.
+/// Returns real and imaginary parts, multiplied by the roots of the weights.
 VectorXd real_rows(const VectorXcd& signal, const VectorXd& root) {
   VectorXd out(2 * signal.size());
   out << signal.real().cwiseProduct(root), signal.imag().cwiseProduct(root);
   return out;
 }
 
-/// Orthonormal columns with the span of those of x, those that depend on others left out.
+/// Returns orthonormal columns with the span of x. Leaves out dependent columns.
 MatrixXd orthonormal(MatrixXd x) {
   constexpr double kDependent = 1e-6;
   Index kept = 0;
@@ -39,7 +39,7 @@ MatrixXd orthonormal(MatrixXd x) {
   return x.leftCols(kept);
 }
 
-/// ends of NeededSignal. along: per bin, the whitened direction of the place.
+/// Returns NeededSignal::ends. along: per bin, the whitened direction of the place.
 MatrixXd ends_of(const Whitened& system, const RecordSegment& s,
                  const std::vector<VectorXcd>& along, const VectorXd& weight) {
   const Index n = system.operation.equations();
@@ -108,7 +108,7 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
       VectorXcd u = system.weights->whitener(b).times(
           axis ? VectorXcd(system.operation[at].col(candidate.axis))
                : VectorXcd(candidate.directions.col(0).cast<Complex>()));
-      if (!others.empty()) {  // the part that the other places explain is not counted
+      if (!others.empty()) {  // exclude the part that the other places explain
         const MatrixXcd basis = candidate_basis(system, b, others);
         u -= (basis * (basis.adjoint() * u)).eval();
       }

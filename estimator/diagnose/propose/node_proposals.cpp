@@ -20,12 +20,12 @@ constexpr double kSlow = 0.3;     ///< of the rms rate: width of the friction te
 
 constexpr double kStationary = 0.25;  ///< share at rest above which a force may be external
 constexpr double kAsMuch = 0.5;       ///< share at rest above which laws must explain kMostly
-constexpr double kMostly = 0.6;       ///< instead of kFollows then
+constexpr double kMostly = 0.6;       ///< replaces kFollows then
 constexpr double kStandsOut = 3;      ///< power of a force over its noise
 constexpr double kEnds_s = 2;         ///< of a segment, which end effects disturb
 constexpr double kQuietest = 0.15;    ///< share of the seconds that count as rest
 
-/// A hidden mass on a spring: force m a T(w).
+/// Adds a hidden mass on a spring: force m a T(w).
 void add_resonator(const Fitter& fitter, const Localisation& place,
                    const std::vector<NeededSignal>& needed, const EffectPlace& node,
                    std::vector<Proposal>& out) {
@@ -92,8 +92,8 @@ Seconds seconds_of(const Plant& plant, const RecordSegment& s, const VectorXcd& 
   return out;
 }
 
-/// Power of a force while the ground is at rest, over its mean power: no law of the building has
-/// any. 0 when the force does not exceed its noise.
+/// Returns the power of a force while the ground is at rest, over its mean power. A law of the
+/// building has no such power. Returns 0 if the force does not exceed its noise.
 double share_at_rest(const Plant& plant, const RecordSegment& s, const NeededSignal& needed) {
   const Seconds seconds = seconds_of(plant, s, beyond_linear(s, needed));
   const std::size_t count = seconds.force.size();
@@ -115,8 +115,8 @@ double share_at_rest(const Plant& plant, const RecordSegment& s, const NeededSig
   return all > kStandsOut * noise ? (rest - noise) / (all - noise) : 0;
 }
 
-/// Whether nonlinear laws of the element's deformation explain more than `share` of a force beyond
-/// its linear part: then it is a law of the element.
+/// Returns true if nonlinear laws of the element's deformation explain more than `share` of a force
+/// beyond its linear part. The force is then a law of the element.
 bool follows_motion(const RecordSegment& s, const NeededSignal& needed, int ratio, double share) {
   if (needed.d_t.size() == 0) return false;
   std::vector<VectorXcd> columns = linear_columns(needed, s.w);

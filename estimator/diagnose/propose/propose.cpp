@@ -31,7 +31,7 @@ void add_masses(const Plant& plant, const Localisation& place, std::vector<Propo
   out.push_back(with_effect(place, e, EffectKind::extra_mass));
 }
 
-/// The flexibility of rotations that stores a twentieth of what the elements store under their
+/// Returns a flexibility of rotations that stores a twentieth of the elements' energy under the
 /// floors' inertia.
 double small_flexibility(const Plant& plant, const Model& model, const ModelEffect& effect) {
   constexpr double kShare = 0.05;
@@ -73,7 +73,7 @@ void add_floors(const Plant& plant, const Localisation& place, std::vector<Propo
   }
 }
 
-/// Scalar fit of the size of a linear effect to the needed force.
+/// Fits the size of a linear effect to the needed force.
 ScalarFit fit_of(const Fitter& fitter, const Localisation& place,
                  const std::vector<NeededSignal>& needed, ModelEffect effect) {
   effect.parameters[0].value = 1;
@@ -91,7 +91,7 @@ ScalarFit fit_of(const Fitter& fitter, const Localisation& place,
   return scalar_fit(needed, columns);
 }
 
-/// A spring or damper at the place, as large as a twentieth of a frame's.
+/// Returns a spring or damper at the place with a twentieth of a frame's size.
 ModelEffect link_at(const Plant& plant, const EffectPlace& place, bool spring) {
   ModelEffect e;
   e.form = spring ? LawForm::spring : LawForm::damper;

@@ -12,7 +12,7 @@ constexpr double kSlownesses[] = {0.3, 0.6, 1.0};  ///< of the record
 constexpr double kCoarse = 0.025, kFine = 0.0025;  ///< steps of an onset, of the record
 constexpr int kRounds = 6;
 
-/// Times of a change in one record, and its normal equations then.
+/// Times of a change in one record, with the resulting normal equations.
 struct Timed {
   std::vector<LawParameter> parameters;
   ScalarSums sums;
@@ -77,7 +77,7 @@ class Timing {
     return out;
   }
 
-  /// Chooses the times that fit all records best together: a single record cannot tell a change
+  /// Chooses the times that together fit all records best. One record cannot distinguish a change
   /// from the opposite change of another stiffness before it.
   void agree(const std::vector<std::vector<Timed>>& times) {
     double least = 1e300;
@@ -90,8 +90,8 @@ class Timing {
     }
   }
 
-  /// Coordinate descent from one time of the first record: the times of the others one after
-  /// another, then each again until none changes.
+  /// Descends from one time of the first record: chooses the times of the other records one after
+  /// another, then repeats until none changes.
   static Choice descend(const std::vector<std::vector<Timed>>& times, std::size_t begin) {
     Choice out{{begin}, times[0][begin].sums.fit().misfit};
     ScalarSums sums = times[0][begin].sums;

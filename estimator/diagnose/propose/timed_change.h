@@ -6,8 +6,8 @@
 
 namespace framewatch::estimator {
 
-/// An effect of the form `changing` with the times of its stiffness change: when it begins and how
-/// long it lasts in every record, its amplitude shared by the records. sudden: its length is fixed.
+/// Returns an effect of the form `changing` with the times of its stiffness change: its start and
+/// duration in every record, with one amplitude for all records. sudden: the duration is fixed.
 ModelEffect timed_change(const Fitter& fitter, const std::vector<NeededSignal>& needed,
                          ModelEffect effect, bool sudden);
 
