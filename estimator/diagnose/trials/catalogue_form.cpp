@@ -36,7 +36,8 @@ double clipping_level(const std::vector<RecordSegment>& segments, Eigen::Index a
   return level;
 }
 
-/// Size and band of an arbitrary force: what nothing else explains of the first segment.
+/// Sets size and band of an arbitrary force: the part of the first segment that no other effect
+/// explains.
 void set_broadband(Effect& out, const Plant& plant, const std::vector<RecordSegment>& segments,
                    const ModelEffect& e, const Model& model) {
   Model rest = model;
@@ -124,7 +125,7 @@ void set_friction(const ModelEffect& e, Effect& out) {
   if (e.parameters.size() > 4) out.set("presliding_m", p(4));
 }
 
-/// At a deformation of a whole frame: shares of the mean stiffness.
+/// At a deformation of a whole frame, as shares of the mean stiffness.
 void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e, Effect& out) {
   double k = 0;
   const std::vector<LawPort> ports = law_ports(plant, model, e);
@@ -132,7 +133,8 @@ void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e,
     k += model.theta[port.element] / static_cast<double>(ports.size());
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   const double share = -p(0) / (k * e.deformation), exponent = p(1);
-  // No element loses more than all it has: the same law at a smaller deformation.
+  // An element cannot lose more than all its stiffness, so a larger share becomes the same law at a
+  // smaller deformation.
   const double nearer = share > 1 && exponent > 1 ? std::pow(share, -1 / (exponent - 1)) : 1;
   out.set("softening", share * std::pow(nearer, exponent - 1));
   out.set("at_m", nearer * e.deformation);
@@ -141,7 +143,8 @@ void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e,
   if (e.parameters.size() > AmplitudeIndex::slip) out.set("slip", p(AmplitudeIndex::slip));
 }
 
-/// Slope of a spring's cubic or quadratic part, whatever its shape: at the largest deformation.
+/// Returns the force of a spring's cubic or quadratic part at the largest deformation, for any
+/// shape.
 double curved_force(const ModelEffect& e) {
   if (e.form == LawForm::power) return e.parameters[0].plain();
   Eigen::VectorXd d(1);
@@ -152,7 +155,7 @@ double curved_force(const ModelEffect& e) {
   return at_end - 1e3 * law_force(e.law(0), d, none, 1)[0];
 }
 
-/// Effects of elements; others are left as they are.
+/// Sets the values of effects of elements. Leaves other effects unchanged.
 void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   switch (out.kind) {
@@ -200,7 +203,8 @@ void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
   }
 }
 
-/// Linear effects that add mass, stiffness or damping; others are left as they are.
+/// Sets the values of linear effects that add mass, stiffness or damping. Leaves other effects
+/// unchanged.
 void set_linear_values(const ModelEffect& e, Effect& out) {
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   switch (out.kind) {

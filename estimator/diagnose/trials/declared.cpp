@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kFitSteps = 5, kOnTheWay = 2;  ///< of the last fit, and of each before it
 
-/// A spring of another shape as the power law that stands for it.
+/// Replaces a spring of another shape by the equivalent power law.
 void as_power(ModelEffect& effect) {
   Eigen::VectorXd d(1), none = Eigen::VectorXd::Zero(1);
   d << effect.deformation;
@@ -73,7 +73,7 @@ Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segme
         (out.*errors)[a] = share * (fitted.*errors)[a] + (1 - share) * (none.*errors)[a];
   };
   const Fitter exact(plant, segments, {0, 0, 0}, within);
-  // Step by step: the fit of a stiff law may not converge when all errors are removed at once.
+  // In small steps: the fit of a stiff law may not converge if all errors are removed at once.
   for (const double share : {0.75, 0.5, 0.25, 0.0}) {
     shrink(&Model::mass_change, share, {});
     shrink(&Model::gain, share, out.free_gain);

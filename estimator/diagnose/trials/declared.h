@@ -7,8 +7,8 @@
 
 namespace framewatch::estimator {
 
-/// The model fitted again with masses, gains and clocks held at their declared values (except those
-/// that are effects) and with the exponents of the catalogue's laws.
+/// Refits a model with masses, gains and clocks held at their declared values (except those that
+/// are effects) and with the exponents of the catalog's laws.
 Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segments,
                      const Model& fitted,
                      const std::vector<const std::vector<FoundEffect>*>& effects,

@@ -16,7 +16,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr std::size_t kMaxRivals = 3;
-constexpr double kFarBehind = 4;   ///< times the cost of the law that was chosen
+constexpr double kFarBehind = 4;   ///< times the cost of the chosen law
 constexpr double kMinLeft = 0.02;  ///< of the design's stiffness
 
 struct Rival {

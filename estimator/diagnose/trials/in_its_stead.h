@@ -7,10 +7,10 @@
 
 namespace framewatch::estimator {
 
-/// Laws were compared when neither the form of the damping nor a second effect was known: the best
-/// of those that were tried at the place of a found law, each fitted in its stead in the present
-/// model. The best of them and the law itself stays, `now` with it; its name is no surer than these
-/// let it be. Whether another law stays.
+/// Compares a found law again with the best alternatives at its place, each fitted as its
+/// replacement in the present model. The first comparison knew neither the form of the damping nor
+/// other effects. Keeps the best of them in `effect` and `now`, and lowers the confidence
+/// accordingly. Returns true if a replacement won.
 bool choose_again(const TrialContext& context, FoundEffect& effect, FitResult& now);
 
 }  // namespace framewatch::estimator

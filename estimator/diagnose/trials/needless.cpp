@@ -11,11 +11,12 @@ namespace {
 constexpr int kJudgedSteps = 6;
 constexpr double kNothing = 0.98;  ///< gap with an effect over the one without
 constexpr int kRoughSteps = 4;
-/// Gap with an effect over the one without after so many steps, below which it takes something.
+/// Gap with an effect over the one without after kRoughSteps, below which the effect reduces the
+/// gap.
 constexpr double kClearly = 0.75;
 
-/// Replaces `now` by the fit of a smaller model, started from it, unless that is worse; whether
-/// it did so.
+/// Replaces `now` by the fit of a smaller model, started from it, unless that is worse. Returns
+/// true if it was replaced.
 bool replaced_by(const Fitter& fitter, const Model& smaller, FitResult& now) {
   FitResult less = fit_to_the_end(fitter, smaller, now.motion);
   if (!less.good || less.cost > now.cost + kMinGain) return false;

@@ -10,31 +10,33 @@
 
 namespace framewatch::estimator {
 
-/// Fall of the cost that is worth an effect.
+/// Smallest fall of the cost that justifies an effect.
 inline constexpr double kMinGain = 50;
 
 inline constexpr int kEndSteps = 6;
 
-/// Until neither kind of derivative improves the fit: an unfinished fit would show up as one more
-/// effect. Of kEndSteps each.
+/// Fits until neither kind of derivative improves the fit, with kEndSteps each. An unfinished fit
+/// would appear as one more effect.
 FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
                          const std::vector<Eigen::MatrixXcd>& motion);
 
-/// Removes what was added to the model `before` if that, fitted on from here, does as well: after
-/// an unfinished fit a needless effect looks useful. Whether it did so.
+/// Removes the effects that `now` has beyond the model `before` if refitting without them gives the
+/// same cost. After an unfinished fit a redundant effect looks useful. Returns true if they were
+/// removed.
 bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now);
 
-/// Mean gap of a model with an effect over that of one without, both fitted to what is judged.
+/// Returns the mean gap of a model with an effect over that of one without, both fitted by
+/// judged_fit().
 double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
                  const Parallel& parallel);
 
-/// Whether the free runs of both models, each fitted to what it is judged by, disagree with the
-/// records alike, though one has an effect more: equations that a law leaves a little wrong are met
-/// better by effects that are not there, motion is not.
+/// Returns true if adding the effect does not reduce the gap of the free run. Each model is fitted
+/// by judged_fit(). A spurious effect can improve the equations of a slightly wrong law, but not
+/// the free run's motion.
 bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
                    const Parallel& parallel);
 
-/// Removes masses, springs and dampers that the last of the effects replaces.
+/// Removes masses, springs and dampers that the last of the effects makes redundant.
 void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,
                              FitResult& now);
 

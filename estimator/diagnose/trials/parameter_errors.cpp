@@ -38,13 +38,13 @@ void set_errors(const Fitter& fitter, const Model& model,
       if (!(parameter && unknown.index == found.index) &&
           !(axis && found.index < 0 && unknown.index == found.chosen.place.channel))
         continue;
-      constexpr double kPart = 0.05;  // of the unknown's unit: its scale is that of a derivative
+      constexpr double kPart = 0.05;  // of the unknown's unit, for the derivative
       Model moved = model;
       set_value(moved, unknown, value_of(model, unknown) + kPart);
       jacobian.col(static_cast<Index>(u)) =
           (catalogue_values(fitter.plant(), fitter.segments(), found, moved) - value) / kPart;
     }
-    // A misfit beyond noise means that errors are larger in proportion.
+    // Errors grow in proportion to the misfit over noise.
     const MatrixXd turned = scale.asDiagonal() * jacobian.transpose();
     const VectorXd variance =
         0.5 * at.level * (jacobian * (scale.asDiagonal() * factor.solve(turned))).diagonal();

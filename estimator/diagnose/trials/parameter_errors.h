@@ -5,8 +5,8 @@
 
 namespace framewatch::estimator {
 
-/// One standard deviation of every parameter of the catalogue's form of the effects, from the
-/// curvature of the misfit with everything else free. Sets FoundEffect::std_error.
+/// Sets FoundEffect::std_error: one standard deviation of every parameter of the effects' catalog
+/// form, from the curvature of the misfit with everything else free.
 void set_errors(const Fitter& fitter, const Model& model,
                 const std::vector<Eigen::MatrixXcd>& motion, std::vector<FoundEffect>& effects);
 

@@ -9,17 +9,18 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kExplains = 0.97;  ///< share of the misfit beyond noise, else a law is not named
-constexpr double kExplainsMost = 0.9;  ///< the same where the rest is within chance
-constexpr double kNearest = 0.8;       ///< the same of the nearest law
-constexpr double kSharp = 0.995;       ///< share above which a fit need not be sharpened
-constexpr double kBlunt = 0.4;         ///< share below which it is not worth it
+constexpr double kExplains =
+    0.97;  ///< share of the misfit beyond noise that a law must explain to be named
+constexpr double kExplainsMost = 0.9;  ///< that share if the rest is within chance
+constexpr double kNearest = 0.8;       ///< that share for the nearest law
+constexpr double kSharp = 0.995;       ///< share above which a fit need not be refined
+constexpr double kBlunt = 0.4;         ///< share below which refining does not pay
 constexpr std::size_t kSharpened = 3;
-/// Times the best cost, or what it has beyond chance: trials above either are not sharpened.
+/// Times the best cost, or its excess beyond chance: trials above either are not refined.
 constexpr double kHopeless = 4;
 constexpr double kBehind = 2;    ///< reductions that are more than chance
 constexpr double kWorse = 1.02;  ///< misfit of a record, relative
-/// By how much an arbitrary force must be better than a law, of the misfit beyond noise.
+/// Share of the misfit beyond noise by which an arbitrary force must be better than a law.
 constexpr double kArbitraryPrice = 1 - kExplains;
 
 bool is_arbitrary_force(const Trial& t) {
@@ -32,8 +33,9 @@ double limit_of(const Trial& best, double enough) {
   return std::min(by_cost, enough + kHopeless * std::max(0.0, best.cost - enough));
 }
 
-/// Fits the leading trials on with everything free. enough: cost above which more than chance is
-/// left; needed: a reduction that is more than chance. Those far behind the best one are no rivals.
+/// Refines the leading trials with everything free. enough: cost above which more than chance is
+/// left; needed: a reduction that is more than chance. Trials far behind the best one are not
+/// rivals.
 void sharpen(const TrialContext& context, double enough, double needed,
              std::vector<Trial>& trials) {
   const Trial& best = trials.front();
@@ -49,7 +51,7 @@ void sharpen(const TrialContext& context, double enough, double needed,
   });
 }
 
-/// Fits the leading trials again from a fit to the record with the weakest effect alone.
+/// Refits the leading trials, starting from a fit to the record with the weakest effect.
 void approach(const TrialContext& context, double enough, std::vector<Trial>& trials) {
   const double limit = limit_of(trials.front(), enough);
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
@@ -102,7 +104,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
   const FitResult& now = context.now;
   const double to_explain = now.cost - bound;
   // Penalties: two effects must beat one by more than chance, an arbitrary force must beat a law,
-  // and every fitted value must explain more than a value explains of noise.
+  // and every fitted value must explain more than it would explain of noise.
   const double of_value = 0.5 * std::log(context.fitter.expected(now.model));
   const auto price = [&](const Trial& t) {
     const bool arbitrary = t.model.effects.size() > now.model.effects.size() &&

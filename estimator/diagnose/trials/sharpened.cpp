@@ -13,7 +13,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr int kSharpSteps = 12;
-constexpr int kWeakestSteps = 6;  ///< to the weakest record, which is a start only
+constexpr int kWeakestSteps = 6;  ///< to the weakest record, which gives only a start
 
 }  // namespace
 

@@ -10,22 +10,23 @@
 
 namespace framewatch::estimator {
 
-/// What all trials of a round share.
+/// Shared by all trials of a round.
 struct TrialContext {
   const Fitter& fitter;
   const FitResult& now;                    ///< the model that is extended
   const std::vector<EffectKind>& without;  ///< excluded names
   const Parallel& parallel;
-  std::function<void(const std::string&)> progress;  ///< what is done now
+  std::function<void(const std::string&)>
+      progress;  ///< called with a description of the current work
 };
 
-/// Whether an effect is an axis' freed gain or clock rather than a member of the model's effects.
+/// Returns true if an effect is an axis' freed gain or clock instead of one of the model's effects.
 bool is_axis_error(EffectKind kind);
 
 void append(std::vector<Trial>& list, std::vector<Trial> more);
 
-/// Expected misfit of the equations that a model's arbitrary signals (broadband forces, clipped
-/// axes) remove from the sum.
+/// Returns the expected misfit of the equations that a model's arbitrary signals (broadband forces,
+/// clipped axes) remove from the sum.
 double removed_misfit(const Fitter& fitter, const Model& model);
 
 }  // namespace framewatch::estimator

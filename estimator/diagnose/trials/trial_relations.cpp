@@ -10,7 +10,7 @@ bool is_same(const Trial& a, const Trial& b) {
   return a.kind == b.kind && a.place == b.place && a.second == b.second;
 }
 
-/// A floor against the ground is the floor.
+/// Turns a floor against the ground into the floor.
 EffectPlace as_node(EffectPlace place) {
   if (place.kind == PlaceKind::node_pair && place.to_story == 0) place.kind = PlaceKind::node;
   return place;

@@ -6,19 +6,19 @@
 
 namespace framewatch::estimator {
 
-/// Whether two places are one to the equations: a force on the lowest story of a frame is one at
-/// its floor, one between a floor and the ground is one at that floor, and a story of a frame is
-/// part of the whole frame.
+/// Returns true if the equations cannot distinguish two places. A force on the lowest story of a
+/// frame equals one at its floor, a force between a floor and the ground equals one at that floor,
+/// and a story of a frame is part of the whole frame.
 bool same_spot(const EffectPlace& a, const EffectPlace& b);
 
-/// The first trial of every name and place; the others came from other start values.
+/// Returns the first trial of every name and place. The others had other start values.
 std::vector<Trial> without_duplicates(const std::vector<Trial>& trials);
 
-/// Whether a trial contradicts the best one: other effects, not the same with one more. An
-/// arbitrary force does as well as any law and is no rival.
+/// Returns true if a trial contradicts the best one: it has other effects, not just one more. An
+/// arbitrary force does as well as any law and is not a rival.
 bool is_rival(const Trial& trial, const Trial& best);
 
-/// The frame in whose stories both effects of a trial are; -1: they are not in one.
+/// Returns the frame whose stories contain both effects of a trial; -1 if there is none.
 int common_frame(const Trial& trial);
 
 }  // namespace framewatch::estimator

@@ -11,9 +11,9 @@ constexpr double kFarOff = 10;    ///< misfit over the expected, below which lab
 constexpr double kMaxLeft = 0.3;  ///< of the cost, with the right labels
 constexpr std::size_t kLabelsFitted = 6;
 constexpr int kLabelSteps = 8;
-constexpr double kTurned = -2;  ///< relative error of the gain of a channel that is turned
+constexpr double kTurned = -2;  ///< relative gain error of a channel with reversed sign
 
-/// The design, beside what the present model has of effects.
+/// Returns the design with the effects of the present model.
 Model from_the_design(const TrialContext& c) {
   Model out = initial_model(c.fitter.plant());
   out.effects = c.now.model.effects;
@@ -69,7 +69,8 @@ void sort_by_cost(std::vector<Trial>& trials) {
                    [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
 }
 
-/// Fits every trial on, at most `steps`; those that cannot be fitted cost without end.
+/// Continues the fit of every trial, at most `steps`. Trials that cannot be fitted get infinite
+/// cost.
 void fit_on(const TrialContext& c, int steps, std::vector<Trial>& trials) {
   run_all(c.parallel, static_cast<int>(trials.size()), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];

@@ -6,10 +6,10 @@
 
 namespace framewatch::estimator {
 
-/// A channel that reads the wrong way round, at the base too, or two channels that are named as
-/// each other, tried before anything else: where the model is far from the records, whatever else
-/// is missing. Best first; empty unless the best takes most of the misfit away. Not of large
-/// buildings, whose exchanged channels are found among the pairs of places.
+/// Tries channels with reversed sign, also at the base, and pairs of channels with exchanged names.
+/// Runs before anything else, and only if the model is far from the records. Returns the trials,
+/// best first, or an empty list unless the best one removes most of the misfit. Not for large
+/// buildings, where exchanged channels are found among the pairs of places.
 std::vector<Trial> wrong_labels(const TrialContext& context);
 
 }  // namespace framewatch::estimator

@@ -34,7 +34,7 @@ using Eigen::MatrixXcd;
 
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 constexpr double kTakesSome = 0.95;  ///< gap with a law over that without
-constexpr double kMaxGone = 0.1;     ///< of the misfit beyond noise, that is left
+constexpr double kMaxGone = 0.1;     ///< of the misfit beyond noise that remains
 
 class Diagnoser {
  public:
@@ -96,7 +96,7 @@ class Diagnoser {
     return fitter_.fit(model, motion, thorough(model, steps));
   }
 
-  /// Effects in doubt, found beside others, without which fit or gap are as good go again.
+  /// Removes effects of low confidence whose removal leaves fit or gap as good.
   void drop_what_takes_nothing(FitResult& now) {
     while (out_.effects.size() > 1) {
       const bool fits = search_.ratio(now) < 1 + chance_of(fitter_, now.model);
@@ -111,8 +111,8 @@ class Diagnoser {
     }
   }
 
-  /// Of a component, laws of two sorts in the place of one where that takes a tenth of the power
-  /// that is left. Hysteresis is of both.
+  /// For a component, replaces the law by laws of two sorts if that explains a tenth of the
+  /// remaining power. Hysteresis is of both sorts.
   void find_two_sorts(FitResult& now) {
     if (plant_.equations() != 1 || out_.effects.size() != 1 || search_.ratio(now) < kNearNoise ||
         is_of_kind(out_.effects.front().chosen.kind, LawKind::hysteretic))
@@ -136,8 +136,7 @@ class Diagnoser {
     if (better.good && better.cost < now.cost) now = better;
   }
 
-  /// The models of the result. Where more than noise is left they are fitted to what they are
-  /// judged by.
+  /// Sets the models of the result. If more than noise is left, fits them by judged_fit().
   void set_models(const Model& model) {
     out_.model = model;
     std::vector<RecordSegment> segments = segments_;
@@ -161,8 +160,7 @@ class Diagnoser {
                                    fitter_.within());
   }
 
-  /// A law is none beside which more than noise is left and whose place needs another sort of
-  /// force.
+  /// Withdraws a law if more than noise is left and its place needs another kind of force.
   void withdraw_other_kind(FitResult& now) {
     const double excess = search_.ratio(now) - 1;
     if (out_.effects.size() != 1 || excess < chance_of(fitter_, now.model) ||
@@ -175,7 +173,8 @@ class Diagnoser {
     now = fit(out_.linear, {}, kBackSteps);
   }
 
-  /// Where nothing is named and no place explains the misfit alone: causes that act at once.
+  /// If nothing is named and no place explains the misfit alone, searches for causes that act at
+  /// once.
   bool find_several(FitResult& now) {
     if (!out_.effects.empty() || search_.alone() < kOnePlace ||
         fits_separately(fitter_, out_.linear, out_.ratio_before))
@@ -202,7 +201,7 @@ class Diagnoser {
     return true;
   }
 
-  /// Causes that take most of the misfit let the place of another show itself.
+  /// Searches for a further effect once several causes explain most of the misfit.
   bool find_beside_several(FitResult& now) {
     if (plant_.is_large() || search_.ratio(now) - 1 > kMaxGone * (out_.ratio_before - 1))
       return false;
@@ -223,7 +222,7 @@ class Diagnoser {
     return true;
   }
 
-  /// Where no law explains enough to hold: the one that is near.
+  /// If no law explains enough, names the nearest one.
   void name_nearest(FitResult& now) {
     if (!out_.effects.empty() || !out_.reason.empty() ||
         !nearest_law_first(search_.context_of(now), out_.where, out_.rejected) ||
@@ -236,9 +235,9 @@ class Diagnoser {
   }
 
   const Plant& plant_;
-  std::vector<RecordSegment>& segments_;  ///< their noise is coloured
+  std::vector<RecordSegment>& segments_;  ///< with the corner frequency of their noise
   SearchProgress progress_;
-  DiagnosisOptions options_;  ///< `parallel` tells the progress
+  DiagnosisOptions options_;  ///< `parallel` reports progress
   Fitter fitter_;
   Diagnosis out_;
   EffectSearch search_;

@@ -26,18 +26,19 @@ namespace {
 constexpr double kOneLaw = 0.99;
 constexpr double kClearer = 0.7;  ///< excess of a place's misfit over that of another search
 constexpr int kStepsBack = 8;
-constexpr std::size_t kLeadLaws = 3;  ///< laws beside which another is looked for
-constexpr double kLeadTakes = 0.3;    ///< of the misfit that a free place takes
-constexpr double kTogether = 0.97;    ///< of the misfit beyond noise, that two explain
-constexpr double kMaxOfRest = 0.8;    ///< of what is left beside the first, by the second
-constexpr double kColoured = 1.05, kMaxColoured = 3;  ///< ratios of places beside which noise is
+constexpr std::size_t kLeadLaws = 3;  ///< laws with which another effect is searched for
+constexpr double kLeadTakes = 0.3;    ///< of the misfit that a free place explains
+constexpr double kTogether = 0.97;    ///< of the misfit beyond noise that two laws explain
+constexpr double kMaxOfRest = 0.8;    ///< of the rest after the first, by the second
+constexpr double kColoured = 1.05,
+                 kMaxColoured = 3;  ///< ratios of places that allow an estimate of the noise
 
-/// Reduction of the cost that is more than chance.
+/// Returns the reduction of the cost that is more than chance.
 double needed_of(const Fitter& fitter, const Model& model) {
   return std::max(kMinGain, kSignificant * std::sqrt(fitter.expected(model)));
 }
 
-/// Of trials, best first, those beside which another effect may be.
+/// Returns the trials with which another effect may act. trials: best first.
 std::vector<Trial> leads_of(const std::vector<Trial>& trials) {
   std::vector<Trial> out;
   for (const Trial& t : without_duplicates(trials)) {
@@ -68,7 +69,7 @@ void EffectSearch::run(FitResult& now) {
   set_linear(now);
 }
 
-/// The laws once more, beside all that was found since; where another is chosen, what it leaves.
+/// Compares the laws again with everything found since. If one is replaced, searches its residual.
 void EffectSearch::choose_laws_again(FitResult& now) {
   bool another = false;
   for (FoundEffect& effect : out_.effects) another |= choose_again(context_of(now), effect, now);
@@ -84,8 +85,8 @@ void EffectSearch::rounds(FitResult& now, std::size_t first) {
   }
 }
 
-/// What is missing may hide the form of the damping, and that what is missing: once more with
-/// ratios that need not be worth their price until something is found.
+/// A missing effect and the form of the damping may hide each other. Searches again with free
+/// damping ratios, which need not justify their price until something is found.
 void EffectSearch::search_with_free_damping(FitResult& now) {
   FitResult free = with_free_damping(fitter_, now);
   if (!free.good) return;
@@ -101,8 +102,8 @@ void EffectSearch::search_with_free_damping(FitResult& now) {
   alone_ = to_beat_;
 }
 
-/// Two effects, neither of which holds without the other: each of the best laws is taken for
-/// granted, and stays where another is found beside it and little is left.
+/// Searches for two effects, neither of which is accepted without the other. Assumes each of the
+/// best laws provisionally, and keeps it if another is found and little is left.
 void EffectSearch::look_ahead(FitResult& now) {
   const Diagnosis before = out_;
   const double alone = alone_;
@@ -140,7 +141,7 @@ bool EffectSearch::explains_beside(const Trial& lead, FitResult& now) {
   return true;
 }
 
-/// What changes with time beside a law of the motion, or the other way round, at the same place.
+/// Adds a time-varying law to a law of the motion at the same place, or the reverse.
 bool EffectSearch::find_beside_at(const Trial& lead, FitResult& now) {
   const std::optional<Localisation> here = localise_element(fitter_, now, lead.place);
   if (!here || here->ratio > kOnePlace) return false;
@@ -152,7 +153,7 @@ bool EffectSearch::find_beside_at(const Trial& lead, FitResult& now) {
   return holds(context, bound, needed_of(fitter_, now.model), trials) && adopt_held(trials, now);
 }
 
-/// Whether the best of the trials is enough, with a law that is taken for granted.
+/// Returns true if the best of the trials explains enough, together with a provisional law.
 bool EffectSearch::holds(const TrialContext& context, double bound, double needed,
                          std::vector<Trial>& trials) {
   if (select_trial(context, bound, needed, trials)) return true;
@@ -181,8 +182,8 @@ void EffectSearch::fit_with_corner(double corner_hz, FitResult& now) {
   if (again.good) now = again;
 }
 
-/// Noise has its colour before all that is missing is known: that of what is left where anything
-/// may act at the likeliest place.
+/// Estimates the noise before all effects are known, from the residual with arbitrary signals at
+/// the likeliest place.
 void EffectSearch::colour_by_place(FitResult& now, Located& located) {
   const Plant& plant = fitter_.plant();
   if (plant.unread.cols() > 0 || plant.equations() < 2 || located.places.empty() ||
@@ -222,8 +223,7 @@ bool EffectSearch::one_round(FitResult& now, std::size_t round) {
   }
   const double needed = needed_of(fitter_, now.model);
   if (excess < needed) return find_mass(now, located);
-  // Beside laws that fit, a small rest is a linear effect or the shape of these laws: no further
-  // law.
+  // If the laws fit, a small rest is a linear effect or the shape of these laws, not a further law.
   const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
   if (small && is_element(place)) return false;
   bool found = false;
@@ -234,7 +234,7 @@ bool EffectSearch::one_round(FitResult& now, std::size_t round) {
   return false;
 }
 
-/// The trials of a round, best first, and whether the best one holds.
+/// Returns the trials of a round, best first. found: set to true if the best one is accepted.
 std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& located,
                                            std::size_t round, bool small, bool& found) {
   const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
@@ -264,7 +264,8 @@ std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& 
     append(trials, trials_of_whole_frame(context, located, -1));
     found = holds(context, bound, needed, trials);
   } else if (const int frame = common_frame(trials.front()); frame >= 0) {
-    // One cause rather than two: what holds of a whole frame is no chance in each of its stories.
+    // One cause rather than two: a law of a whole frame is not a coincidence in each of its
+    // stories.
     std::vector<Trial> whole = trials_of_whole_frame(context, located, frame);
     const bool one = holds(context, bound, needed, whole);
     append(trials, whole);
@@ -273,8 +274,8 @@ std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& 
   return trials;
 }
 
-/// Adopts the best of trials that hold, unless it is a second law at the place of an earlier one:
-/// what changes with time beside a law of the motion is none.
+/// Adopts the best accepted trial, unless it is a second law at the place of an earlier one. A
+/// time-varying law and a law of the motion may share a place.
 bool EffectSearch::adopt_held(const std::vector<Trial>& trials, FitResult& now) {
   const Trial& best = trials.front();
   for (std::size_t i = 0; i < out_.effects.size(); ++i) {
@@ -282,7 +283,7 @@ bool EffectSearch::adopt_held(const std::vector<Trial>& trials, FitResult& now) 
     if (!same_spot(earlier.chosen.place, best.place) ||
         changes_with_time(earlier.chosen.kind) != changes_with_time(best.kind))
       continue;
-    // Two laws at one place are a single law that the catalogue does not have.
+    // Two laws at one place are a single law that the catalog lacks.
     const bool whole = earlier.chosen.place.kind == PlaceKind::whole_frame;
     if (earlier.chosen.fraction < kOneLaw && fitter_.plant().equations() > 1 && !whole)
       withdraw(now, i);
@@ -300,7 +301,7 @@ bool EffectSearch::find_mass(FitResult& now, const Located& located) {
   return true;
 }
 
-/// Goes back to the model before the effect `first` was added.
+/// Returns to the model before the effect `first` was added.
 void EffectSearch::withdraw(FitResult& now, std::size_t first) {
   const Plant& plant = fitter_.plant();
   out_.reason = "no single law of the catalogue is what acts at " +
@@ -333,7 +334,8 @@ void EffectSearch::adopt(const std::vector<Trial>& trials, FitResult& now) {
   }
   const Model before = now.model;
   now = fit_to_the_end(fitter_, best.model, now.motion);
-  // Trials of a large building hold its masses: what these explain looks like the effect.
+  // Trials of a large building hold its masses, so an effect of the masses looks like the trial's
+  // effect.
   if ((known > 0 || fitter_.plant().is_large()) && removes_needless(fitter_, before, now)) {
     out_.effects.resize(known);
     if (known == 0) set_linear(now);

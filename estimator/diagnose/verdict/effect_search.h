@@ -11,35 +11,35 @@
 
 namespace framewatch::estimator {
 
-/// Looks for effects, one or two in a round, and adds them to a diagnosis and to a fit. Whatever it
-/// refers to must outlive it.
+/// Searches for effects, one or two per round, and adds them to a diagnosis and to a fit. All
+/// arguments of the constructor must outlive it.
 class EffectSearch {
  public:
-  /// segments: those of the fitter; their noise is coloured. options: `parallel` tells the
-  /// progress.
+  /// segments: those of the fitter; the search sets their noise corner frequency. options: its
+  /// `parallel` reports progress.
   EffectSearch(const Fitter& fitter, std::vector<RecordSegment>& segments,
                const DiagnosisOptions& options, SearchProgress& progress, Diagnosis& out)
       : fitter_(fitter), segments_(segments), options_(options), progress_(progress), out_(out) {}
 
-  /// Until nothing more is found. now: the model that is extended.
+  /// Searches until nothing more is found. now: the model that is extended.
   void run(FitResult& now);
-  /// What else is missing, from the round `first` on.
+  /// Searches for further effects, from round `first` on.
   void rounds(FitResult& now, std::size_t first);
-  /// Adds the effect, or both, of the first of the trials, which come best first.
+  /// Adds the effect, or both, of the first of the trials. trials: best first.
   void adopt(const std::vector<Trial>& trials, FitResult& now);
-  /// Adds what no effect stands for: the form of the damping, and the colour of the noise.
+  /// Fits what is not an effect: the form of the damping and the corner frequency of the noise.
   void complete(FitResult& now);
   void set_linear(const FitResult& now) {
     out_.linear = now.model;
     out_.ratio_before = ratio(now);
   }
-  /// Leaves no effect surer than a doubt.
+  /// Limits the confidence in every effect to kDoubtful.
   void doubt_all() {
     for (FoundEffect& e : out_.effects) e.confidence = std::min(e.confidence, kDoubtful);
   }
   double ratio(const FitResult& now) const;  ///< misfit over its expectation
   TrialContext context_of(const FitResult& now) const;
-  /// Localisation::ratio of the likeliest place, in the last round.
+  /// Returns Localisation::ratio of the likeliest place in the last round.
   double alone() const { return alone_; }
 
  private:
@@ -65,8 +65,9 @@ class EffectSearch {
   Diagnosis& out_;
   double to_beat_ = 1e300;  ///< alone() of another search
   double alone_ = 0;
-  bool by_place_ = false;  ///< the noise's colour is that beside a place, not what the model leaves
-  double before_lead_ = 0;  ///< cost before a law that is taken for granted; 0: none is
+  bool by_place_ = false;   ///< the noise's corner frequency was estimated at a place, not from the
+                            ///< model's residual
+  double before_lead_ = 0;  ///< cost before a law that is assumed provisionally; 0: no such law
 };
 
 }  // namespace framewatch::estimator

@@ -46,11 +46,11 @@ std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions
 
 namespace {
 
-/// outputs: axes that Gap::overall is of.
+/// outputs: number of axes in Gap::overall.
 void add_ramp(const RecordSegment& s, Index axis, double slope, double from_s, double rms,
               Index outputs, Gap& gap) {
   const double length = std::max(s.seconds() - from_s, 0.0), share = length / s.seconds();
-  // Of slope max(t - from, 0) about its mean, where it is no other curve.
+  // Of slope max(t - from, 0) about its mean, unless the drift is another curve.
   const double square =
       std::max(std::pow(slope * length, 2) * share * (1.0 / 3 - share / 4), rms * rms);
   const double intervals = static_cast<double>(s.intervals());
@@ -70,7 +70,7 @@ void add_ramps_to_gaps(const Plant& plant, const std::vector<RecordSegment>& seg
                        std::size_t holdout_from, Diagnosis& d) {
   Index outputs = 0;
   for (Index a = 0; a < plant.axis_count(); ++a) outputs += is_output(plant, a);
-  // The last one first: what it leaves is the gap that the search began with.
+  // Starts with the last one: its gap is the one before the search.
   for (auto found = d.effects.rbegin(); found != d.effects.rend(); ++found) {
     if (found->ramp_mps3.empty()) continue;
     found->after = mean_gap(d.before, holdout_from);

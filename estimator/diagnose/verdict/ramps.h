@@ -6,8 +6,8 @@
 
 namespace framewatch::estimator {
 
-/// Subtracts the ramps of the configuration (DiagnosisOptions::known) and those that are found from
-/// the segments. Returns the latter.
+/// Subtracts the ramps of the configuration (DiagnosisOptions::known) and those it finds from the
+/// segments. Returns the ramps that it found.
 std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions& options,
                                       std::vector<RecordSegment>& segments);
 

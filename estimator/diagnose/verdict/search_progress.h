@@ -9,32 +9,32 @@
 
 namespace framewatch::estimator {
 
-/// Shares of the search at which a round looks for places, tries laws, and is over.
+/// Shares of the search at which a round starts to locate, starts to fit laws, and ends.
 struct RoundShares {
   double where, trials, end;
 
-  /// Where pairs of places are tried before.
+  /// Returns the share at which laws start if pairs of places are tried first.
   double laws() const { return trials + 0.3 * (end - trials); }
 };
 inline constexpr RoundShares kRounds[] = {{0.05, 0.15, 0.5}, {0.5, 0.57, 0.7}, {0.7, 0.72, 0.75}};
 
-/// How much of a search is done: its stages have shares of the whole, and so has the work within a
-/// stage that runs in parallel. What comes after a stage is not known before it ends, so shares are
-/// those of a search that goes all its way: a shorter one ends early.
+/// Reports the progress of a search. Stages have fixed shares of the whole, and so does parallel
+/// work within a stage. The shares assume a search through all stages, so a shorter search ends
+/// early.
 class SearchProgress {
  public:
-  /// tell: empty: nobody is told.
+  /// tell: empty: reports nothing.
   SearchProgress(TellProgress tell, Parallel parallel);
   SearchProgress(const SearchProgress&) = delete;
   SearchProgress& operator=(const SearchProgress&) = delete;
 
-  /// A stage begins, from one share of the whole to another, not before where the last one got.
-  /// calls: shares of the stage that its calls of counted() take, one after the other; each
-  /// beyond takes half of what is left.
+  /// Starts a stage that covers the shares `from` to `to`, but not below the share already reached.
+  /// calls: shares of the stage for its calls of counted(), one after the other; each further call
+  /// gets half of the rest.
   void begin(const std::string& what, double from, double to, std::vector<double> calls = {});
-  /// What the stage is at now.
+  /// Reports the current work of the stage.
   void say(const std::string& what);
-  /// Does the work as `parallel` and tells of it; must not outlive this.
+  /// Returns `parallel` with progress reports. Must not outlive this object.
   Parallel counted();
 
  private:

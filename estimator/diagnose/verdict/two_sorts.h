@@ -7,9 +7,9 @@
 
 namespace framewatch::estimator {
 
-/// A law of the deformation and a dissipative one together at an element, best first: how a part
-/// springs back does not say how it damps, nor the other way round. Hysteresis is both, and none of
-/// them. context: of the model without a law there.
+/// Returns trials that combine a law of the deformation and a dissipative law at an element, best
+/// first. The elastic force of a part does not determine its damping, nor the reverse. Hysteresis
+/// is both, so it is left out. context: of the model without a law there.
 std::vector<Trial> trials_of_two_sorts(const TrialContext& context, const EffectPlace& element);
 
 }  // namespace framewatch::estimator

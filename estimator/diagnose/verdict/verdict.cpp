@@ -14,16 +14,16 @@ namespace {
 constexpr double kAdequateGap = 2;     ///< NRMSE over its floor
 constexpr double kExplainsAll = 0.97;  ///< of the misfit beyond noise
 constexpr double kNearFloor = 2.5;     ///< NRMSE over its floor
-constexpr double kAtFloor = 1.15;      ///< the same
+constexpr double kAtFloor = 1.15;      ///< NRMSE over its floor
 constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
 constexpr int kTrainSteps = 8;
 constexpr double kLittle = 0.1;      ///< of an effect's size
 constexpr std::size_t kLeading = 3;  ///< rejected laws whose free run is fitted
 constexpr int kLeadingSteps = 4;
 constexpr double kLeads = 0.9;     ///< gap with a law over the one without
-constexpr double kNoWorse = 1.02;  ///< the same of any record
-constexpr double kWorse = 1.1;     ///< held-out gap with what was found over the one without
-/// Of the misfit beyond noise that is left at most when each record is fitted separately.
+constexpr double kNoWorse = 1.02;  ///< gap of any record with a law over the one without
+constexpr double kWorse = 1.1;     ///< held-out gap with the effects over the one without
+/// Largest share of the misfit beyond noise that is left if each record is fitted separately.
 constexpr double kApart = 0.25;
 
 }  // namespace
@@ -88,14 +88,14 @@ Model with_first(const Model& model, const std::vector<FoundEffect>& effects, st
 
 namespace {
 
-/// Starts of the model that has the first `count` of the effects.
+/// Returns starts of the model with the first `count` of the effects.
 std::vector<Model> starts_with(const std::vector<Model>& found, const Diagnosis& diagnosis,
                                std::size_t count, const Plant& plant) {
   std::vector<Model> out;
   for (const Model& model : found) {
     out.push_back(with_first(model, diagnosis.effects, count, plant));
-    // Stiffnesses that make up for what is not there yet may be a long way off, and so may what
-    // its neighbours made of an effect.
+    // Stiffnesses that compensate for a missing effect may be far off, and so may an effect fitted
+    // together with the others.
     out.push_back(out.back());
     out.back().theta = diagnosis.linear.theta;
     out.push_back(out.back());
@@ -110,7 +110,7 @@ std::vector<Model> starts_with(const std::vector<Model>& found, const Diagnosis&
 
 void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out) {
   const std::size_t holdout_from = options.holdout_from, count = out.effects.size();
-  // Infinite where a run diverges.
+  // Infinite if a run diverges.
   const auto held_out = [&](const std::vector<Gap>& gaps) {
     return gaps.size() < fitter.segments().size() ? std::numeric_limits<double>::infinity()
                                                   : mean_gap(gaps, holdout_from);
@@ -158,7 +158,7 @@ bool is_arbitrary(const Model& model) {
                      [](const ModelEffect& e) { return e.form == LawForm::broadband; });
 }
 
-/// Whether no record is worse.
+/// Returns true if no record is worse.
 bool no_worse(const std::vector<Gap>& before, const std::vector<Gap>& after) {
   if (after.size() < before.size()) return false;
   for (std::size_t r = 0; r < before.size(); ++r)
@@ -270,14 +270,14 @@ void judge(const Fitter& fitter, Diagnosis& out) {
   }
   const double fraction =
       (out.ratio_before - out.ratio_after) / std::max(out.ratio_before - 1, 1e-9);
-  // An arbitrary force does as well as any law: it explains nothing. Nor does a law that is near.
+  // An arbitrary force does as well as any law, so it explains nothing. Neither does a nearest law.
   const bool surrogate =
       std::any_of(out.effects.begin(), out.effects.end(), [&](const FoundEffect& e) {
         return e.nearest ||
                (e.index >= 0 &&
                 out.model.effects[static_cast<std::size_t>(e.index)].form == LawForm::broadband);
       });
-  // A linear effect has no shape of its own: what it leaves beyond chance is another one's.
+  // A linear effect has no free shape, so a residual beyond chance belongs to another effect.
   const bool another =
       std::any_of(out.effects.begin(), out.effects.end(), [&](const FoundEffect& e) {
         return e.index >= 0 && e.approximate &&

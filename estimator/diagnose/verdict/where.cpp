@@ -13,10 +13,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kTail = 0.05;         ///< of the energy lies before, and after
+constexpr double kTail = 0.05;         ///< of the energy before, and after
 constexpr std::size_t kDescribed = 3;  ///< places whose signal is described
 
-/// First and last index between the tails of the sum.
+/// Returns the first and last index between the tails of the sum.
 std::pair<Index, Index> middle(const VectorXd& energy) {
   const double total = energy.sum();
   Index first = 0, last = energy.size() - 1;
@@ -29,15 +29,16 @@ std::pair<Index, Index> middle(const VectorXd& energy) {
   return {first, last};
 }
 
-/// Whether it is a floor in one direction, or one against another, at which a contact may act.
+/// Returns true if the place is a floor in one direction, or relative to another floor, where a
+/// contact may act.
 bool is_floor(const Localisation& place) {
   const CandidatePlace& at = place.candidate_places.front();
   const bool floor = at.kind == CandidatePlace::Kind::node || at.kind == CandidatePlace::Kind::link;
   return floor && at.size() == 1 && at.place.story >= 2;
 }
 
-/// Of an element what sort of force it needs; of a floor, where anything may act, one that follows
-/// its motion.
+/// Returns the kind of force of an element. For a floor, where any force may act, returns it only
+/// if the force follows the floor's motion.
 std::optional<KindOfLaw> kind_at(const Fitter& fitter, const Localisation& place,
                                  std::vector<NeededSignal> needed) {
   if (is_floor(place)) set_motion_of_floor(fitter, place, needed);

@@ -7,11 +7,12 @@
 
 namespace framewatch::estimator {
 
-/// The signal that each place needs: when, at which frequencies and how large; of the first element
-/// among the best three, what sort of force it is.
+/// Describes the signal that each place needs: its time, frequencies and size. For the first
+/// element and the first floor among the best three, also the kind of force.
 std::vector<WhereEntry> where_of(const Fitter& fitter, const std::vector<Localisation>& places);
 
-/// Every place, best first: as iterated where that was done, after one step elsewhere.
+/// Returns every place, best first. Uses the iterated localization of a place if there is one,
+/// otherwise the one after one step.
 std::vector<WhereEntry> map_of(const Located& located);
 
 }  // namespace framewatch::estimator
