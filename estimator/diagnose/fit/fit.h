@@ -59,9 +59,9 @@ class Fitter {
   FitResult fit(const Model& start, const std::vector<Eigen::MatrixXcd>& motion,
                 const FitOptions& options) const;
   /// Returns the whitened equations of every segment, or an empty list if the model cannot be
-  /// computed. weights: systems whose weights to use; null: compute the model's weights. caches,
-  /// here and below: one for each segment, or one for all segments of a large building; null: no
-  /// cache.
+  /// computed. `weights`: systems whose weights to use; null: compute the model's weights.
+  /// `caches`, here and below: one for each segment, or one for all segments of a large building;
+  /// null: no cache.
   std::vector<Whitened> systems(const Model& model, const std::vector<Eigen::MatrixXcd>& motion,
                                 Forcing forcing, const std::vector<Whitened>* weights = nullptr,
                                 std::vector<RunCache>* caches = nullptr) const;

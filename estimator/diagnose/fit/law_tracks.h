@@ -19,8 +19,8 @@ enum class Forcing { measured, simulated };
 Forcing forcing_of(const Model& model);
 
 /// Returns motion and force of the model's element laws, or nullopt if the free run diverges.
-/// motion: axes x bins, drives the laws if forcing is `measured`; empty: the calibrated readings.
-/// ratio: steps per sample. cache: not shared between threads; null: no cache.
+/// `motion`: axes x bins, drives the laws if forcing is `measured`; empty: the calibrated readings.
+/// `ratio`: steps per sample. `cache`: not shared between threads; null: no cache.
 std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& model,
                                                const RecordSegment& segment, std::size_t record,
                                                Forcing forcing, const Eigen::MatrixXcd& motion,

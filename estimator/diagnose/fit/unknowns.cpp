@@ -10,7 +10,7 @@ using Kind = Unknown::Kind;
 
 constexpr double kTightK = 0.6, kTightG = 1.0, kTightC = 3.0;  ///< weak priors, relative
 constexpr double kMaxSigmas = 4;  ///< of masses, gains and clocks from their declared values
-/// Of the design's stiffness or damping. Structures dissipate, and the equation of a mode that
+/// Lower bound, of the design's stiffness or damping. Structures dissipate, and the equation of a mode that
 /// neither dissipates nor is driven from the base would have no noise.
 constexpr double kMin = 0.02;
 constexpr double kLooseGain = 0.05, kLooseClock_s = 1e-3;  ///< units

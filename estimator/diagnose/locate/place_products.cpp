@@ -12,7 +12,7 @@ using Eigen::MatrixXcd;
 
 namespace {
 
-/// Of a direction's square, below which it depends on the directions before it.
+/// Share of a direction's square below which it depends on the directions before it.
 constexpr double kIndependent = 1e-12;
 
 Complex product(const Eigen::RowVectorXcd& equations, const BinProducts::Direction& direction) {

@@ -30,8 +30,9 @@ struct SmallSpring {
 
 /// Simulates the model under the measured motion of the base alone. Starts from rest, or from the
 /// motion measured in the segment's lead. Integrates the linear part exactly in its complex modes
-/// and solves for the forces of the laws implicitly at the end of each step. record: index of the
-/// segment's record. ratio: steps per sample. cache: not shared between threads; null: no cache.
+/// and solves for the forces of the laws implicitly at the end of each step. `record`: index of the
+/// segment's record. `ratio`: steps per sample. `cache`: not shared between threads; null: no
+/// cache.
 FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& segment,
                  std::size_t record, int ratio, RunCache* cache = nullptr,
                  const std::vector<SmallSpring>& springs = {});

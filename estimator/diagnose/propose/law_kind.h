@@ -51,13 +51,14 @@ struct KindOfLaw {
   Eigen::VectorXd d_m, force_n;
 };
 
-/// Determines the kind of a force by regression on general functions:
-/// - elastic: powers of the deformation and a broken line
-/// - dissipative: functions of the rate, also scaled by the deformation
-/// - hysteretic: stop operators of several widths (Prandtl 1928, Masri and Caughey 1979), which may
-/// fade with past motion, and springs that become slack
-/// - time-varying: the deformation with a stiffness that varies in time
-/// - impact: springs and dashpots beyond the best clearance, if powers do worse
+/// Determines the kind of a force by regression on general functions of these kinds.
+///
+/// - `elastic`: powers of the deformation and a broken line
+/// - `dissipative`: functions of the rate, also scaled by the deformation
+/// - `hysteretic`: stop operators of several widths (Prandtl 1928, Masri and Caughey 1979), which
+///   may fade with past motion, and springs that become slack
+/// - `time_varying`: the deformation with a stiffness that varies in time
+/// - `impact`: springs and dashpots beyond the best clearance, if powers do worse
 ///
 /// Returns the simplest kind that explains about as much as the best. needed: of an element, or of
 /// a floor with its motion (set_motion_of_floor()).

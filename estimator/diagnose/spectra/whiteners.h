@@ -11,9 +11,9 @@ namespace framewatch::estimator {
 
 /// Returns the inverse of the Cholesky factor L of the equations' noise covariance in every bin, L
 /// L^H = D S D^H: docs/equations.md (33). Returns an empty list if a bin has an equation without
-/// noise. operation: D of every bin, equations x axes. noise: variances S, axes x bins. pushed:
-/// covariance of arbitrary forces, equations x equations, in units of the mean variance of an
-/// equation; may be empty.
+/// noise. `operation`: D of every bin, equations x axes. `noise`: variances S, axes x bins.
+/// `pushed`: covariance of arbitrary forces, equations x equations, in units of the mean variance
+/// of an equation; may be empty.
 std::vector<Whitener> whiteners(const std::function<Eigen::MatrixXcd(Eigen::Index)>& operation,
                                 const Eigen::MatrixXd& noise, const Eigen::MatrixXd& pushed);
 

@@ -18,7 +18,7 @@ std::vector<Trial> without_duplicates(const std::vector<Trial>& trials);
 /// arbitrary force does as well as any law and is not a rival.
 bool is_rival(const Trial& trial, const Trial& best);
 
-/// Returns the frame whose stories contain both effects of a trial; -1 if there is none.
+/// Returns the frame whose stories contain both effects of a trial; -1 if they share no frame.
 int common_frame(const Trial& trial);
 
 }  // namespace framewatch::estimator

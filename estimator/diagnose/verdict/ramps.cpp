@@ -50,7 +50,7 @@ namespace {
 void add_ramp(const RecordSegment& s, Index axis, double slope, double from_s, double rms,
               Index outputs, Gap& gap) {
   const double length = std::max(s.seconds() - from_s, 0.0), share = length / s.seconds();
-  // Of slope max(t - from, 0) about its mean, unless the drift is another curve.
+  // Mean square of slope max(t - from, 0) about its mean, unless the drift is another curve.
   const double square =
       std::max(std::pow(slope * length, 2) * share * (1.0 / 3 - share / 4), rms * rms);
   const double intervals = static_cast<double>(s.intervals());
