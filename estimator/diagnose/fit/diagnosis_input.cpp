@@ -7,7 +7,6 @@
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/model/run_system.h"
-#include "estimator/diagnose/spectra/delay.h"
 #include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/eigenvalues.h"

@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/fit/unknowns.h"
-#include "estimator/diagnose/model/component_test.h"
 #include "estimator/diagnose/model/plant.h"
 #include "estimator/diagnose/spectra/record_segment.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/model/modal_damping.h"
 
 namespace framewatch::estimator {

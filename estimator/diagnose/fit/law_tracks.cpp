@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/diagnose/fit/axis_readings.h"
 #include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/numeric/complex.h"

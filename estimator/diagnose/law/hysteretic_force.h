@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "estimator/diagnose/law/law_values.h"
+#include "estimator/diagnose/law/law_parameter.h"
 
 namespace framewatch::estimator {
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/whitened.h"
 
 namespace framewatch::estimator {
@@ -33,5 +34,18 @@ void update_directions(const Plant& plant, const Model& model,
 /// Returns the whitened directions of the places in one bin, orthonormal: equations x directions.
 Eigen::MatrixXcd candidate_basis(const Whitened& system, Eigen::Index bin,
                                  const std::vector<CandidatePlace>& candidate_places);
+
+/// Products of the orthonormal whitened directions of a list of places with the columns, and with
+/// unit forces on the equations: directions x columns or equations.
+struct PlaceProducts {
+  Eigen::MatrixXcd columns, equations;
+};
+
+/// Computes both. products: of the bin of its last compute().
+PlaceProducts place_products(const BinProducts& products,
+                             const std::vector<CandidatePlace>& places);
+/// Computes the products with unit forces only, which need only BinProducts::put_metric().
+Eigen::MatrixXcd place_equations(const BinProducts& products,
+                                 const std::vector<CandidatePlace>& places);
 
 }  // namespace framewatch::estimator

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "estimator/diagnose/fit/bin_products.h"
-#include "estimator/diagnose/fit/sampled_bins.h"
-#include "estimator/diagnose/locate/place_products.h"
+#include "estimator/diagnose/fit/normal_equations.h"
+#include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/spectra/row_gram.h"
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "estimator/diagnose/fit/linearised.h"
+#include "estimator/diagnose/fit/fit_columns.h"
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/numeric/parallel.h"
 

@@ -7,9 +7,9 @@
 
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/normal_equations.h"
+#include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/locate/closer_look.h"
 #include "estimator/diagnose/locate/large_lists.h"
-#include "estimator/diagnose/locate/place_products.h"
 #include "estimator/numeric/complex.h"
 namespace framewatch::estimator {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/model/model.h"
-#include "estimator/diagnose/model/run_cache.h"
+#include "estimator/diagnose/model/run_system.h"
 #include "estimator/diagnose/spectra/record_segment.h"
 
 namespace framewatch::estimator {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/model/hinges.h"
 #include "estimator/diagnose/model/modal_damping.h"
+#include "estimator/diagnose/model/model.h"
 
 namespace framewatch::estimator {
 namespace {

@@ -6,8 +6,6 @@
 
 #include "estimator/diagnose/law/hysteretic_force.h"
 #include "estimator/diagnose/law/law.h"
-#include "estimator/diagnose/law/slack.h"
-#include "estimator/diagnose/law/sliding.h"
 
 namespace framewatch::estimator {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <complex>
 
-#include "estimator/diagnose/model/hinges.h"
+#include "estimator/diagnose/model/model.h"
 #include "estimator/diagnose/propose/axis_proposals.h"
 #include "estimator/diagnose/propose/contact_proposals.h"
 #include "estimator/diagnose/propose/element_proposals.h"

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/spectra/row_gram.h"
-#include "estimator/diagnose/spectra/whitener.h"
+#include "estimator/diagnose/spectra/whiteners.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {

@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "estimator/diagnose/law/hysteretic_force.h"
-#include "estimator/diagnose/law/slack.h"
+#include "estimator/diagnose/law/law.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/fit/onset.h"
+#include "estimator/diagnose/fit/free_run_start.h"
 #include "estimator/diagnose/trials/sharpened.h"
 
 namespace framewatch::estimator {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimator/diagnose/fit/onset.h"
+#include "estimator/diagnose/fit/free_run_start.h"
 #include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/trials/trial_names.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "estimator/diagnose/law/hysteretic_force.h"
-#include "estimator/diagnose/law/slack.h"
+#include "estimator/diagnose/law/law.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 
 namespace framewatch::estimator {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/fit/judged_fit.h"
-#include "estimator/diagnose/fit/model_error.h"
 #include "estimator/diagnose/fit/noise_colour.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/trials/declared.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/noise_colour.h"
-#include "estimator/diagnose/locate/beside_place.h"
+#include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/trials/implausible_masses.h"
 #include "estimator/diagnose/trials/in_its_stead.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/model/bias.h"
 #include "estimator/diagnose/verdict/verdict.h"
 

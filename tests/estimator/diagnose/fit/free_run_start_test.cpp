@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/law/sliding.h"
+#include "estimator/diagnose/law/law.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {

@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/model/modal_damping.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "tests/estimator/diagnose/exact_record.h"

@@ -5,9 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/fit/fit_columns.h"
 #include "estimator/diagnose/fit/normal_equations.h"
-#include "estimator/diagnose/fit/run_columns.h"
-#include "estimator/diagnose/fit/sampled_bins.h"
 #include "estimator/diagnose/locate/localise.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/estimator/diagnose/exact_record.h"

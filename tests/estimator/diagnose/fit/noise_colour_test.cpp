@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/fit/axis_readings.h"
-#include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/gap.h"
+#include "estimator/diagnose/fit/measured_deformation.h"
 #include "tests/estimator/diagnose/flicker.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/fit/operations.h"
+#include "estimator/diagnose/fit/whitened.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#include "estimator/diagnose/fit/run_columns.h"
 
 #include <gtest/gtest.h>
 

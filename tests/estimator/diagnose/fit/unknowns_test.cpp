@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/fit/linearised.h"
+#include "estimator/diagnose/fit/fit_columns.h"
 #include "estimator/diagnose/fit/unknowns.h"
 #include "tests/estimator/diagnose/exact_record.h"
 #include "tests/estimator/diagnose/other_buildings.h"

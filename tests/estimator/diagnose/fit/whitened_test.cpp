@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/fit/axis_readings.h"
 #include "estimator/diagnose/fit/law_tracks.h"
+#include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/numeric/complex.h"
 #include "tests/estimator/diagnose/exact_record.h"

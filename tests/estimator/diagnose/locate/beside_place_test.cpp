@@ -1,4 +1,4 @@
-#include "estimator/diagnose/locate/beside_place.h"
+#include "estimator/diagnose/locate/locate.h"
 
 #include <gtest/gtest.h>
 

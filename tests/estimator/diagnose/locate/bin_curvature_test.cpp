@@ -1,4 +1,4 @@
-#include "estimator/diagnose/locate/bin_curvature.h"
+#include "estimator/diagnose/locate/closer_look.h"
 
 #include <numeric>
 

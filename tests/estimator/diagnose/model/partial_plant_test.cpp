@@ -5,7 +5,6 @@
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/model/model.h"
-#include "estimator/diagnose/model/partial_plant.h"
 #include "estimator/structure/story_groups.h"
 #include "tests/estimator/diagnose/small_building.h"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/model/free_run.h"
-#include "estimator/diagnose/spectra/upsampled.h"
+#include "estimator/diagnose/spectra/fourier.h"
 #include "tests/estimator/diagnose/other_buildings.h"
 
 namespace framewatch::estimator {

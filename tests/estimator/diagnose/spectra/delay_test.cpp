@@ -1,4 +1,4 @@
-#include "estimator/diagnose/spectra/delay.h"
+#include "estimator/diagnose/spectra/fourier.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/spectra/whitener.h"
+#include "estimator/diagnose/spectra/whiteners.h"
 
 #include <complex>
 #include <limits>
