@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/fit/fit_columns.h"
+#include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
 

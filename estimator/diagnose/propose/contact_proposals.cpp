@@ -6,7 +6,7 @@
 #include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/propose/law_starts.h"
-#include "estimator/diagnose/propose/scalar_fit.h"
+#include "estimator/diagnose/propose/needed_signal.h"
 
 namespace framewatch::estimator {
 namespace {

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/propose/proposal.h"
 
 namespace framewatch::estimator {
 

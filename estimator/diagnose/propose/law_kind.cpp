@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "estimator/diagnose/propose/scalar_fit.h"
+#include "estimator/diagnose/propose/needed_signal.h"
 
 namespace framewatch::estimator {
 namespace {

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/locate/localise.h"
+#include "estimator/diagnose/model/model.h"
+#include "estimator/structure/effect.h"
 
 namespace framewatch::estimator {
 
@@ -44,5 +46,43 @@ std::vector<Eigen::VectorXcd> linear_columns(const NeededSignal& needed, const E
 std::vector<Eigen::VectorXcd> columns_with(const ModelEffect& effect, const Fitter& fitter,
                                            const std::vector<NeededSignal>& needed,
                                            std::size_t record);
+
+/// Weighted least squares of a needed force on complex columns with real coefficients. The last
+/// column is the law's.
+struct ScalarFit {
+  double misfit = 1e300;
+  Eigen::VectorXd coefficients;
+};
+
+/// Normal equations of one record. Those of several records add up.
+struct ScalarSums {
+  Eigen::MatrixXd normal;
+  Eigen::VectorXd right;
+  double total = 0;  ///< misfit without any column
+
+  ScalarSums& operator+=(const ScalarSums& more);
+  ScalarFit fit() const;
+};
+
+/// Computes the normal equations of one record. Removes from the force and the columns what the
+/// ends of the segment can add.
+ScalarSums scalar_sums(const NeededSignal& needed, const std::vector<Eigen::VectorXcd>& columns);
+
+/// Fits the same coefficients to all records. columns: of each record.
+ScalarFit scalar_fit(const std::vector<NeededSignal>& needed,
+                     const std::vector<std::vector<Eigen::VectorXcd>>& columns);
+
+/// Returns the needed force minus the part that a linear element explains; the whole force if the
+/// place is not an element.
+Eigen::VectorXcd beyond_linear(const RecordSegment& segment, const NeededSignal& needed);
+
+/// An effect that could act at a place, with start values from the force (or reading) that the
+/// place needs.
+struct Proposal {
+  Model model;      ///< the effect is its last one, or an axis' gain or delay is freed
+  EffectKind kind;  ///< first guess of the name; name_of_fit() decides after the fit
+  EffectPlace place;
+  double misfit = 0;  ///< of the scalar fit; ranks the proposals of one place
+};
 
 }  // namespace framewatch::estimator

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "estimator/diagnose/locate/localise.h"
-#include "estimator/diagnose/propose/proposal.h"
+#include "estimator/diagnose/propose/needed_signal.h"
 
 namespace framewatch::estimator {
 

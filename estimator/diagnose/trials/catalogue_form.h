@@ -14,4 +14,9 @@ Effect catalogue_effect(const Plant& plant, const std::vector<RecordSegment>& se
 Eigen::VectorXd catalogue_values(const Plant& plant, const std::vector<RecordSegment>& segments,
                                  const FoundEffect& found, const Model& model);
 
+/// Sets FoundEffect::std_error: one standard deviation of every parameter of the effects' catalog
+/// form, from the curvature of the misfit with everything else free.
+void set_errors(const Fitter& fitter, const Model& model,
+                const std::vector<Eigen::MatrixXcd>& motion, std::vector<FoundEffect>& effects);
+
 }  // namespace framewatch::estimator

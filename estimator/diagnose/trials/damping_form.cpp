@@ -11,7 +11,7 @@
 #include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/model/modal_damping.h"
 #include "estimator/diagnose/trials/linear_gains.h"
-#include "estimator/diagnose/trials/needless.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {

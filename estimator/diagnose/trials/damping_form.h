@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "estimator/diagnose/fit/fit.h"
-#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/structure/effect.h"
 
 namespace framewatch::estimator {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/trials/trial_relations.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 

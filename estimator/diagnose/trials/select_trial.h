@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "estimator/diagnose/trials/found_effect.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/trials/trials.h"
 
 namespace framewatch::estimator {
@@ -22,5 +24,11 @@ double fitted_values(const Model& model);
 
 /// Returns true if a trial fits any record worse than the present model, by more than chance.
 bool worsens(const Trial& trial, const FitResult& now, double chance);
+
+/// Compares a found law again with the best alternatives at its place, each fitted as its
+/// replacement in the present model. The first comparison knew neither the form of the damping nor
+/// other effects. Keeps the best of them in `effect` and `now`, and lowers the confidence
+/// accordingly. Returns true if a replacement won.
+bool choose_again(const TrialContext& context, FoundEffect& effect, FitResult& now);
 
 }  // namespace framewatch::estimator

@@ -9,9 +9,9 @@
 #include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
-#include "estimator/diagnose/trials/sharpened.h"
+#include "estimator/diagnose/trials/refit.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/trials/trial_names.h"
-#include "estimator/diagnose/trials/trial_relations.h"
 #include "estimator/diagnose/trials/trials.h"
 
 namespace framewatch::estimator {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "estimator/diagnose/trials/found_effect.h"
-#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 

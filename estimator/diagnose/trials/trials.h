@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "estimator/diagnose/locate/localise.h"
-#include "estimator/diagnose/propose/proposal.h"
-#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/propose/needed_signal.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 

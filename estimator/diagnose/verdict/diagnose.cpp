@@ -4,33 +4,159 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/fit/noise_colour.h"
+#include "estimator/diagnose/propose/law_kind.h"
+#include "estimator/diagnose/propose/propose.h"
+#include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"
-#include "estimator/diagnose/trials/declared.h"
 #include "estimator/diagnose/trials/known_effects.h"
-#include "estimator/diagnose/trials/needless.h"
-#include "estimator/diagnose/trials/parameter_errors.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/select_trial.h"
 #include "estimator/diagnose/trials/several_causes.h"
-#include "estimator/diagnose/trials/sharpened.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/trials/trial_names.h"
-#include "estimator/diagnose/trials/wrong_labels.h"
+#include "estimator/diagnose/trials/trials.h"
 #include "estimator/diagnose/verdict/effect_search.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
-#include "estimator/diagnose/verdict/ramps.h"
-#include "estimator/diagnose/verdict/search_progress.h"
-#include "estimator/diagnose/verdict/two_sorts.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::estimator {
 namespace {
 
 using Eigen::MatrixXcd;
+
+constexpr std::size_t kOfDeformation = 4, kDissipative = 2;
+
+bool is_dissipative(EffectKind law) {
+  return is_of_kind(law, LawKind::dissipative);
+}
+
+std::vector<Proposal> of_sort(const TrialContext& c, std::vector<Proposal> all,
+                              bool (*wanted)(EffectKind), std::size_t most) {
+  std::erase_if(all, [&](const Proposal& p) { return !wanted(p.kind) || is_excluded(c, p.kind); });
+  if (all.size() > most) all.resize(most);
+  return all;
+}
+
+/// Returns trials that combine a law of the deformation and a dissipative law at an element, best
+/// first. The elastic force of a part does not determine its damping, nor the reverse. Hysteresis
+/// is both, so it is left out. context: of the model without a law there.
+std::vector<Trial> trials_of_two_sorts(const TrialContext& c, const EffectPlace& element) {
+  const std::optional<Localisation> here = localise_element(c.fitter, c.now, element);
+  if (!here) return {};
+  const std::vector<Proposal> all = propose(c.fitter, *here, 0);
+  std::vector<Trial> out =
+      try_together(c, *here, of_sort(c, all, is_of_deformation, kOfDeformation),
+                   of_sort(c, all, is_dissipative, kDissipative));
+  select_trial(c, here->misfit, 0, out);
+  std::erase_if(out, [](const Trial& t) { return t.outcome != TrialOutcome::fitted; });
+  return out;
+}
+
+constexpr double kFarOff = 10;    ///< misfit over the expected, below which labels are not doubted
+constexpr double kMaxLeft = 0.3;  ///< of the cost, with the right labels
+constexpr std::size_t kLabelsFitted = 6;
+constexpr int kLabelSteps = 8;
+constexpr double kTurned = -2;  ///< relative gain error of a channel with reversed sign
+
+/// Returns the design with the effects of the present model.
+Model from_the_design(const TrialContext& c) {
+  Model out = initial_model(c.fitter.plant());
+  out.effects = c.now.model.effects;
+  out.free_gain = c.now.model.free_gain;
+  out.free_clock = c.now.model.free_clock;
+  for (const int axis : out.free_gain) out.gain[axis] = c.now.model.gain[axis];
+  for (const int axis : out.free_clock) out.clock_s[axis] = c.now.model.clock_s[axis];
+  return out;
+}
+
+Trial turned(const Model& from, int axis) {
+  Trial out;
+  out.kind = EffectKind::polarity;
+  out.place.kind = PlaceKind::channel;
+  out.place.channel = axis;
+  out.model = from;
+  out.model.free_gain.push_back(axis);
+  out.model.gain[axis] = kTurned;
+  return out;
+}
+
+Trial exchanged(const Model& from, int axis, int other) {
+  Trial out;
+  out.kind = EffectKind::swapped;
+  out.place.kind = PlaceKind::channel_pair;
+  out.place.channel = axis;
+  out.place.with_channel = other;
+  ModelEffect swap;
+  swap.form = LawForm::swapped;
+  swap.place = out.place;
+  out.model = from;
+  out.model.effects.push_back(swap);
+  return out;
+}
+
+std::vector<Trial> all_labels(const TrialContext& c) {
+  const Model from = from_the_design(c);
+  const auto axes = static_cast<int>(c.fitter.plant().axis_count());
+  std::vector<Trial> out;
+  for (int axis = 0; axis < axes; ++axis) {
+    if (std::find(from.free_gain.begin(), from.free_gain.end(), axis) == from.free_gain.end())
+      out.push_back(turned(from, axis));
+    for (int other = axis + 1; other < axes; ++other) out.push_back(exchanged(from, axis, other));
+  }
+  std::erase_if(out, [&](const Trial& t) {
+    return std::find(c.without.begin(), c.without.end(), t.kind) != c.without.end();
+  });
+  return out;
+}
+
+void sort_by_cost(std::vector<Trial>& trials) {
+  std::stable_sort(trials.begin(), trials.end(),
+                   [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
+}
+
+/// Continues the fit of every trial, at most `steps`. Trials that cannot be fitted get infinite
+/// cost.
+void fit_on(const TrialContext& c, int steps, std::vector<Trial>& trials) {
+  run_all(c.parallel, static_cast<int>(trials.size()), [&](int i) {
+    Trial& t = trials[static_cast<std::size_t>(i)];
+    FitOptions options;
+    options.max_steps = steps;
+    const FitResult fit = c.fitter.fit(t.model, {}, options);
+    t.cost = fit.good ? fit.cost : std::numeric_limits<double>::infinity();
+    if (!fit.good) return;
+    t.misfit = fit.misfit;
+    t.model = fit.model;
+  });
+  sort_by_cost(trials);
+}
+
+/// Tries channels with reversed sign, also at the base, and pairs of channels with exchanged names.
+/// Runs before anything else, and only if the model is far from the records. Returns the trials,
+/// best first, or an empty list unless the best one removes most of the misfit. Not for large
+/// buildings, where exchanged channels are found among the pairs of places.
+std::vector<Trial> wrong_labels(const TrialContext& c) {
+  const Plant& plant = c.fitter.plant();
+  const double expected = c.fitter.expected(c.now.model);
+  if (plant.is_large() || plant.equations() == 1 || plant.prescribed ||
+      c.now.total_misfit() < kFarOff * expected)
+    return {};
+  std::vector<Trial> trials = all_labels(c);
+  fit_on(c, 0, trials);
+  if (trials.size() > kLabelsFitted) trials.resize(kLabelsFitted);
+  fit_on(c, kLabelSteps, trials);
+  std::erase_if(trials, [](const Trial& t) { return !(t.cost < 1e300); });
+  if (trials.empty() || trials.front().cost > kMaxLeft * c.now.cost) return {};
+  for (Trial& t : trials) t.fraction = (c.now.cost - t.cost) / std::max(c.now.cost - expected, 1.0);
+  return trials;
+}
 
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 constexpr double kTakesSome = 0.95;  ///< gap with a law over that without

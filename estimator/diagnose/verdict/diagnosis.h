@@ -10,6 +10,7 @@
 
 #include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/fit/unknowns.h"
+#include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/propose/law_kind.h"
 #include "estimator/diagnose/trials/found_effect.h"
 #include "estimator/numeric/parallel.h"
@@ -73,5 +74,13 @@ struct DiagnosisOptions {
   Parallel within;        ///< for the pieces of one call of `parallel`, and between its calls
   TellProgress progress;  ///< between the calls of `parallel`
 };
+
+/// Describes the signal that each place needs: its time, frequencies and size. For the first
+/// element and the first floor among the best three, also the kind of force.
+std::vector<WhereEntry> where_of(const Fitter& fitter, const std::vector<Localisation>& places);
+
+/// Returns every place, best first. Uses the iterated localization of a place if there is one,
+/// otherwise the one after one step.
+std::vector<WhereEntry> map_of(const Located& located);
 
 }  // namespace framewatch::estimator

@@ -10,14 +10,13 @@
 #include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/trials/implausible_masses.h"
-#include "estimator/diagnose/trials/in_its_stead.h"
-#include "estimator/diagnose/trials/needless.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/select_trial.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/trials/trial_names.h"
-#include "estimator/diagnose/trials/trial_relations.h"
+#include "estimator/diagnose/verdict/diagnosis.h"
 #include "estimator/diagnose/verdict/verdict.h"
-#include "estimator/diagnose/verdict/where.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -52,6 +51,42 @@ std::vector<Trial> leads_of(const std::vector<Trial>& trials) {
 }
 
 }  // namespace
+
+SearchProgress::SearchProgress(TellProgress tell, Parallel parallel)
+    : tell_(std::move(tell)), parallel_(std::move(parallel)) {}
+
+void SearchProgress::begin(const std::string& what, double from, double to,
+                           std::vector<double> calls) {
+  from_ = done_ = std::max(from, done_);
+  to_ = std::max(to, from_);
+  calls_ = std::move(calls);
+  call_ = 0;
+  say(what);
+}
+
+void SearchProgress::say(const std::string& what) {
+  what_ = what;
+  tell(done_);
+}
+
+Parallel SearchProgress::counted() {
+  return [this](int count, const std::function<void(int)>& work) { run(count, work); };
+}
+
+void SearchProgress::run(int count, const std::function<void(int)>& work) {
+  const double left = to_ - done_;
+  const double part =
+      call_ < calls_.size() ? std::min(calls_[call_] * (to_ - from_), left) : left / 2;
+  ++call_;
+  tell(done_ + part);
+  run_all(parallel_, count, work);
+  done_ += part;
+  tell(done_);
+}
+
+void SearchProgress::tell(double then) const {
+  if (tell_) tell_(what_, done_, then);
+}
 
 void EffectSearch::run(FitResult& now) {
   const FitResult linear = now;

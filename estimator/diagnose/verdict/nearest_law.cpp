@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "estimator/diagnose/trials/select_trial.h"
-#include "estimator/diagnose/trials/trial_relations.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 

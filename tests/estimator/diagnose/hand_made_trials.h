@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "estimator/diagnose/fit/unknowns.h"
-#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::test {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/propose/proposal.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 

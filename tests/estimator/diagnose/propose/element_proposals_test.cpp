@@ -7,7 +7,6 @@
 
 #include "estimator/diagnose/propose/element_proposals.h"
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/propose/proposal.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 

@@ -5,7 +5,6 @@
 
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/propose/scalar_fit.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {

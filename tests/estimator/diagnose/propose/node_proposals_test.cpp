@@ -6,7 +6,6 @@
 #include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/propose/node_proposals.h"
-#include "estimator/diagnose/propose/proposal.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "estimator/simulate/random.h"
 #include "tests/estimator/diagnose/hidden_effect.h"

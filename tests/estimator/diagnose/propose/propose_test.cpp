@@ -5,7 +5,7 @@
 #include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/model/make_plant.h"
-#include "estimator/diagnose/propose/proposal.h"
+#include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 #include "tests/support/example_effects.h"

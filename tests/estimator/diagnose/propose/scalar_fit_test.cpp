@@ -6,7 +6,6 @@
 
 #include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/propose/scalar_fit.h"
 #include "estimator/simulate/random.h"
 
 namespace framewatch::estimator {

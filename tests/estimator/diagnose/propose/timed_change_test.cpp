@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/law/law_parameter.h"
+#include "estimator/diagnose/propose/element_proposals.h"
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/propose/timed_change.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {

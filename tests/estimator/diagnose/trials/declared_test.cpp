@@ -1,4 +1,4 @@
-#include "estimator/diagnose/trials/declared.h"
+#include "estimator/diagnose/trials/refit.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/trials/in_its_stead.h"
+#include "estimator/diagnose/trials/select_trial.h"
 
 #include <algorithm>
 

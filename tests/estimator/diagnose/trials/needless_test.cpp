@@ -1,4 +1,4 @@
-#include "estimator/diagnose/trials/needless.h"
+#include "estimator/diagnose/trials/refit.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/trials/parameter_errors.h"
+#include "estimator/diagnose/trials/catalogue_form.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/trials/trial_relations.h"
+#include "estimator/diagnose/trials/trial.h"
 
 #include <gtest/gtest.h>
 

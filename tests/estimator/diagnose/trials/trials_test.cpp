@@ -9,7 +9,7 @@
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/trials/round_trials.h"
-#include "estimator/diagnose/trials/sharpened.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "tests/estimator/diagnose/hand_made_trials.h"
 
 namespace framewatch::estimator {

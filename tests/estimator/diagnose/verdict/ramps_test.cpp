@@ -1,4 +1,4 @@
-#include "estimator/diagnose/verdict/ramps.h"
+#include "estimator/diagnose/verdict/verdict.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/verdict/search_progress.h"
+#include "estimator/diagnose/verdict/effect_search.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,21 @@
 
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/trials/found_effect.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
+
+/// Refines a trial, starting from `from`, with the shape of hysteresis free. Returns the trial
+/// unchanged if that is not better.
+Trial sharpened(const TrialContext& context, const Trial& trial, const Model& from);
+
+/// Returns a model fitted to the record with the smallest relative misfit. A strongly nonlinear law
+/// may converge there where a fit to all records does not.
+Model fitted_to_the_weakest(const TrialContext& context, const Model& model);
+
+/// Frees the shapes of all laws (free_shape).
+void free_shapes(Model& model);
 
 /// Smallest fall of the cost that justifies an effect.
 inline constexpr double kMinGain = 50;
@@ -39,5 +51,12 @@ bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without
 /// Removes masses, springs and dampers that the last of the effects makes redundant.
 void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,
                              FitResult& now);
+
+/// Refits a model with masses, gains and clocks held at their declared values (except those that
+/// are effects) and with the exponents of the catalog's laws.
+Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segments,
+                     const Model& fitted,
+                     const std::vector<const std::vector<FoundEffect>*>& effects,
+                     const Parallel& within = {});
 
 }  // namespace framewatch::estimator

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/verdict/where.h"
+#include "estimator/diagnose/verdict/diagnosis.h"
 
 #include <algorithm>
 #include <cmath>
