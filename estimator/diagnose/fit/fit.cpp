@@ -82,7 +82,7 @@ double Fitter::prior_cost(const Model& model) const {
   double sum = 0;
   for (const Unknown& u : unknowns_of(plant_, model, tolerances_))
     if (u.sigma > 0) {
-      const double away = (value_of(model, u) - u.centre) / u.sigma;
+      const double away = (value_of(model, u) - u.center) / u.sigma;
       sum += 0.5 * away * away;
     }
   return sum;
@@ -122,7 +122,7 @@ Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
     if (unknown.sigma <= 0) continue;
     // The misfit is half of a sum of squares with variance one.
     out.prior[u] = 0.5 / (unknown.sigma * unknown.sigma);
-    out.pull[u] = out.prior[u] * (unknown.centre - value_of(model, unknown));
+    out.pull[u] = out.prior[u] * (unknown.center - value_of(model, unknown));
   }
   out.columns.resize(segments_.size());
   of_all([&](std::size_t r) {
@@ -177,22 +177,22 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
         damping = std::max(1e-4, damping * 20);
         continue;
       }
-      const Model trial = moved(out.model, at.unknowns, step);
+      const Model candidate = moved(out.model, at.unknowns, step);
       std::vector<Whitened> then =
-          systems(trial, out.motion, options.forcing, &at.systems, &caches);
+          systems(candidate, out.motion, options.forcing, &at.systems, &caches);
       const bool falls =
-          !then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before;
+          !then.empty() && total_misfit(then) + at.level * prior_cost(candidate) < before;
       const bool near = at.level < kNearNoise;
       if (falls && plant_.is_large() && !near && total_misfit(then) > kNewWeights * weighted) {
         now = std::move(then);
         own_weights = false;
       } else if (falls || (!then.empty() && near)) {
-        now = reweighted(trial, std::move(then));
+        now = reweighted(candidate, std::move(then));
         own_weights = true;
         if (!now.empty()) weighted = total_misfit(now);
       }
-      better = falls || (!now.empty() && total_misfit(now) + prior_cost(trial) < out.cost);
-      if (better) out.model = trial;
+      better = falls || (!now.empty() && total_misfit(now) + prior_cost(candidate) < out.cost);
+      if (better) out.model = candidate;
       damping = better ? std::max(1e-9, damping / 10) : std::max(1e-3, damping * 10);
     }
     if (!better || now.empty()) break;

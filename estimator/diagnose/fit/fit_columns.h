@@ -58,7 +58,7 @@ struct Linearised {
   /// Ratio of misfit to its expectation under noise, at least 1. The prior is weighted by it, so
   /// that a model that does not fit cannot compensate with masses, gains and clocks.
   double level = 1;
-  Eigen::VectorXd prior, pull;  ///< level / (2 sigma^2); that times (centre - value)
+  Eigen::VectorXd prior, pull;  ///< level / (2 sigma^2); that times (center - value)
 };
 
 }  // namespace framewatch::estimator

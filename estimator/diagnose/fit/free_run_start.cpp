@@ -52,7 +52,7 @@ FitResult as_it_runs(const Fitter& fitter, const Model& model,
 
 /// Refines friction between the tried forces, and its smoothness. A fit cannot do this: from a
 /// force that is too large, friction sticks and no step lowers the cost.
-FitResult closer(const Fitter& fitter, FitResult best) {
+FitResult refined_friction(const Fitter& fitter, FitResult best) {
   const auto try_with = [&](double force, double smoothness) {
     Model model = best.model;
     std::vector<LawParameter>& parameters = model.effects.back().parameters;
@@ -118,7 +118,7 @@ std::vector<FitResult> friction_starts(const Fitter& fitter, const Model& from) 
   for (std::size_t i = 0; i < kForces; ++i)
     if (tried[i].good && (i == 0 || is_better(tried[i], tried[i - 1])) &&
         (i + 1 == kForces || is_better(tried[i], tried[i + 1])))
-      out.push_back(closer(fitter, tried[i]));
+      out.push_back(refined_friction(fitter, tried[i]));
   std::stable_sort(out.begin(), out.end(), is_better);
   if (out.size() > kStarts) out.resize(kStarts);
   return out;

@@ -23,7 +23,7 @@ struct Unknown {
   int record = 0;
   double scale = 1;  ///< one unit of the unknown in the member
   double sigma = 0;  ///< of the prior, in units of the unknown; 0: no prior
-  double centre = 0;
+  double center = 0;
   double low = -std::numeric_limits<double>::infinity();  ///< bounds, in units of the unknown
   double high = std::numeric_limits<double>::infinity();
   /// Further members of theta with the same value, and their scales.

@@ -23,8 +23,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr double kArbitrary = 1e6;   ///< variance of an arbitrary signal, over that of noise
-constexpr Index kMinNeighbours = 8;  ///< bins on either side over which the misfit is averaged
+constexpr double kArbitrary = 1e6;  ///< variance of an arbitrary signal, over that of noise
+constexpr Index kMinNeighbors = 8;  ///< bins on either side over which the misfit is averaged
 
 }  // namespace
 
@@ -139,7 +139,7 @@ MatrixXcd shown_motion(const Plant& plant, const MatrixXd& noise, const Whitened
   VectorXd level(bins);
   for (Index b = 0; b < bins; ++b) level[b] = system.rest.segment(2 * n * b, 2 * n).squaredNorm();
   const bool fits = level.mean() < kNearNoise * rows;
-  const Index around = std::max<Index>(kMinNeighbours, bins / 60);
+  const Index around = std::max<Index>(kMinNeighbors, bins / 60);
   for (Index b = 0; b < bins; ++b) {
     const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
     const double local = level.segment(from, to - from).mean() / rows;

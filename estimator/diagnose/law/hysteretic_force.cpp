@@ -196,9 +196,8 @@ double asymptotic_z(const LawValues& values, const std::vector<double>& memory, 
   const double direction = now[kDirection], dy = values.p[A::dy];
   const double way = direction - now[kReversalZ];
   if (direction == 0 || std::abs(way) < kNoWay) return z;
-  const double corner = now[kReversal_m] + way * dy;
-  const double beyond =
-      std::abs((direction > 0 ? now[kLargest_m] : now[kSmallest_m]) - corner) / dy;
+  const double knee = now[kReversal_m] + way * dy;
+  const double beyond = std::abs((direction > 0 ? now[kLargest_m] : now[kSmallest_m]) - knee) / dy;
   const double sharpness = std::max(
       values.p[A::sharpness] * (1 - values.p[A::loss] * beyond / (kHalf + beyond)), kMinSharpness);
   const double x = std::max((d_now - now[kReversal_m]) / (way * dy), 0.0);

@@ -11,8 +11,8 @@ struct LawParameter {
   bool logarithmic = false;
   double step = 0;  ///< unit of the fit's unknown, about the size of a significant change
   double low = -1e300, high = 1e300;  ///< bounds of `value`
-  double sigma = 0;                   ///< of a weak prior around `centre`; 0: no prior
-  double centre = 0;
+  double sigma = 0;                   ///< of a weak prior around `center`; 0: no prior
+  double center = 0;
   bool free = true;  ///< false: held at its value
 
   /// Returns the value in the law's own unit.

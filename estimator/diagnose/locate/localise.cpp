@@ -8,7 +8,7 @@
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/locate/candidate_places.h"
-#include "estimator/diagnose/locate/closer_look.h"
+#include "estimator/diagnose/locate/conjugate_step.h"
 #include "estimator/diagnose/locate/large_lists.h"
 #include "estimator/numeric/complex.h"
 namespace framewatch::estimator {
@@ -25,7 +25,7 @@ constexpr double kConverged = 1e-3;  ///< change of the misfit, relative
 constexpr std::size_t kNumbersTogether = 8'000'000, kFewestTogether = 8, kMaxTogether = 64;
 /// Lists of a large building that get a step by conjugate gradients; the others have only a rough
 /// misfit.
-constexpr std::size_t kCloser = 64;
+constexpr std::size_t kWithStep = 64;
 
 /// Returns the unknowns that a step may change. Includes masses, gains and clocks within tolerance
 /// only if `tolerances`.
@@ -177,18 +177,18 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   const std::vector<MatrixXd> squares = squares_of(fitter, at, kept);
   const double prior = fitter.prior_cost(model);
   std::vector<Localisation> out(lists.size());
-  // closer: only of a large building.
-  const auto store = [&](std::size_t i, const Reduced& reduced, const CloserLook* closer) {
+  // conjugate: only for a large building.
+  const auto store = [&](std::size_t i, const Reduced& reduced, const ConjugateStep* conjugate) {
     Localisation& one = out[i];
     one.candidate_places = lists[i];
     if (explains_everything(fitter, one.candidate_places)) {
       one = everything(fitter, model, one.candidate_places, at.systems);
       return;
     }
-    const VectorXd step = closer ? closer->step : step_of(reduced, at, model, 1.0, kept);
+    const VectorXd step = conjugate ? conjugate->step : step_of(reduced, at, model, 1.0, kept);
     if (!step.allFinite()) return;
-    const double left = closer
-                            ? closer->left
+    const double left = conjugate
+                            ? conjugate->left
                             : reduced.equations.misfit + step.dot(reduced.equations.normal * step) +
                                   2 * step.dot(reduced.equations.gradient);
     one.misfit = left + prior;
@@ -200,7 +200,7 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   };
   std::vector<std::size_t> chosen(lists.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  if (fitter.plant().is_large() && lists.size() > kCloser) {
+  if (fitter.plant().is_large() && lists.size() > kWithStep) {
     const std::vector<double> left = rough_misfits(at, kept, squares, lists, parallel);
     for (std::size_t i = 0; i < lists.size(); ++i) {
       out[i].candidate_places = lists[i];
@@ -209,12 +209,12 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     }
     std::stable_sort(chosen.begin(), chosen.end(),
                      [&](std::size_t a, std::size_t b) { return out[a].ratio < out[b].ratio; });
-    chosen.resize(kCloser);
+    chosen.resize(kWithStep);
   }
   const auto numbers = static_cast<std::size_t>(squares.empty() ? 1 : squares.front().size());
   const bool large = fitter.plant().is_large();
   const std::size_t at_once =
-      large ? kCloser / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMaxTogether);
+      large ? kWithStep / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMaxTogether);
   const std::size_t groups = (chosen.size() + at_once - 1) / at_once;
   run_all(parallel, static_cast<int>(groups), [&](int group) {
     const std::size_t first = static_cast<std::size_t>(group) * at_once;
@@ -222,14 +222,14 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     for (std::size_t i = first; i < std::min(first + at_once, chosen.size()); ++i)
       together.push_back(lists[chosen[i]]);
     const std::vector<Reduced> reduced = reduce(fitter, at, model, kept, squares, together);
-    std::vector<CloserLook> closer;
+    std::vector<ConjugateStep> conjugate;
     if (large) {
       std::vector<NormalEquations> equations;
       for (const Reduced& one : reduced) equations.push_back(one.equations);
-      closer = closer_looks(at, kept, together, equations);
+      conjugate = conjugate_steps(at, kept, together, equations);
     }
     for (std::size_t i = 0; i < reduced.size(); ++i)
-      store(chosen[first + i], reduced[i], large ? &closer[i] : nullptr);
+      store(chosen[first + i], reduced[i], large ? &conjugate[i] : nullptr);
   });
   if (chosen.size() < lists.size()) {  // lists with only a rough misfit come after all others
     double last = 0;

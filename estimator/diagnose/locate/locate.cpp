@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "estimator/diagnose/fit/noise_colour.h"
+#include "estimator/diagnose/fit/noise_corner.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -24,7 +24,7 @@ constexpr double kOutlier = 3;        ///< standard deviations of a cell of nois
 constexpr double kMaxCells = 0.6;     ///< smallest share of cells that are noise
 
 /// Returns the residual with arbitrary signals at a place, in cells.
-std::vector<NoiseCell> cells_beside(const Fitter& fitter, const Localisation& place) {
+std::vector<NoiseCell> cells_at(const Fitter& fitter, const Localisation& place) {
   std::vector<NoiseCell> out;
   const std::vector<Whitened> systems =
       fitter.systems(place.model, place.motion, Forcing::measured);
@@ -279,13 +279,13 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   return out;
 }
 
-bool colour_beside(const Fitter& fitter, std::vector<RecordSegment>& segments,
-                   const Localisation& place) {
+bool set_noise_corner_at(const Fitter& fitter, std::vector<RecordSegment>& segments,
+                         const Localisation& place) {
   const double before_hz = segments.front().corner_hz;
   Localisation now = place;
   double spread = 0;
   for (int i = 0; i <= kTimesBeside; ++i) {
-    std::vector<NoiseCell> cells = cells_beside(fitter, now);
+    std::vector<NoiseCell> cells = cells_at(fitter, now);
     if (cells.empty() || (i == 0 && spread_of(cells, 0) < kNoiseBeside)) break;
     const double corner_hz = corner_of_most(cells);
     spread = spread_of(cells, corner_hz);

@@ -43,7 +43,7 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places);
 /// Estimates the corner frequency of the noise (RecordSegment::corner_hz) from the residual with
 /// arbitrary signals at a place. Uses most of the cells; in the others some effect is still
 /// missing. Sets it in `segments`, which are those of the fitter. Returns true if it changed.
-bool colour_beside(const Fitter& fitter, std::vector<RecordSegment>& segments,
-                   const Localisation& place);
+bool set_noise_corner_at(const Fitter& fitter, std::vector<RecordSegment>& segments,
+                         const Localisation& place);
 
 }  // namespace framewatch::estimator

@@ -44,7 +44,7 @@ Model initial_model(const Plant& plant) {
     bending.place.direction = along;
     bending.parameters = {
         bounded_parameter(1 / stiffness, kBendingStep / stiffness, 0, kMaxBending / stiffness)};
-    bending.parameters[0].sigma = bending.parameters[0].centre = 1 / stiffness;
+    bending.parameters[0].sigma = bending.parameters[0].center = 1 / stiffness;
     out.effects.push_back(bending);
   }
   return out;

@@ -39,8 +39,9 @@ void add_losses(Shape& shape) {
 }
 
 LawStarts bouc_wen(const LawScale& s, double exponent) {
-  const bool corner = exponent > kSmooth;
-  LawStarts out{F::hysteresis, corner ? EffectKind::bilinear_hysteresis : EffectKind::bouc_wen, {}};
+  const bool bilinear = exponent > kSmooth;
+  LawStarts out{
+      F::hysteresis, bilinear ? EffectKind::bilinear_hysteresis : EffectKind::bouc_wen, {}};
   for (const double yield : shrinking(0.9, 0.004, 0.7)) {
     out.shapes.push_back(hysteretic(s, yield, exponent, 0.5));
     add_losses(out.shapes.back());

@@ -47,16 +47,16 @@ void hold_at_zero(Model& model, std::size_t effect) {
 }
 
 /// A model without some ratios, at the minimum that a quadratic model of the cost predicts.
-struct Fewer {
+struct FewerRatios {
   Model model;
   std::size_t removed = 0;
 };
 
 /// Removes the ratios that reduce the cost by less than their price, the least useful first, and
 /// adjusts everything else.
-Fewer without_needless(const Fitter& fitter, const std::vector<std::size_t>& ratios,
-                       const FitResult& now) {
-  Fewer out{now.model};
+FewerRatios without_redundant(const Fitter& fitter, const std::vector<std::size_t>& ratios,
+                              const FitResult& now) {
+  FewerRatios out{now.model};
   std::vector<Whitened> systems = fitter.systems(now.model, now.motion, forcing_of(now.model));
   if (systems.empty()) return out;
   const Linearised at = fitter.linearise(now.model, std::move(systems), thorough(now.model, 0));
@@ -100,8 +100,9 @@ Fewer without_needless(const Fitter& fitter, const std::vector<std::size_t>& rat
 }
 
 /// Refits without the ratios that reduce the cost by less than their price.
-void remove_needless(const Fitter& fitter, const std::vector<std::size_t>& ratios, FitResult& now) {
-  const Fewer fewer = without_needless(fitter, ratios, now);
+void remove_redundant_ratios(const Fitter& fitter, const std::vector<std::size_t>& ratios,
+                             FitResult& now) {
+  const FewerRatios fewer = without_redundant(fitter, ratios, now);
   if (fewer.removed == 0) return;
   FitResult without = fitter.fit(fewer.model, now.motion, thorough(fewer.model, kStepsWithout));
   const double price = static_cast<double>(fewer.removed) * price_of(fitter, now);
@@ -186,10 +187,10 @@ void settle_damping(const Fitter& fitter, FitResult with, FitResult& now) {
   const std::vector<std::size_t> ratios =
       modes_in_band(fitter.plant(), now.model, fitter.segments());
   if (with.good && with.cost < now.cost - price_of(fitter, with)) {
-    remove_needless(fitter, ratios, with);
+    remove_redundant_ratios(fitter, ratios, with);
     if (with.cost < now.cost) now = std::move(with);
   } else if (has_modal_damping(now.model)) {
-    remove_needless(fitter, ratios, now);
+    remove_redundant_ratios(fitter, ratios, now);
   }
 }
 

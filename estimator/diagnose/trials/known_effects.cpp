@@ -146,11 +146,11 @@ void set_hysteresis(const Effect& effect, ModelEffect& e) {
                     bounded_parameter(value("spread"), 0.02, 0, 0.98), loss("strength_loss")};
     return;
   }
-  const bool corner = effect.kind == EffectKind::bilinear_hysteresis;
+  const bool bilinear = effect.kind == EffectKind::bilinear_hysteresis;
   e.parameters =
-      hysteretic_shape(value("kh_npm"), value("dy_m"), corner ? kBilinear : value("exponent"),
-                       corner ? 0.5 : value("beta"), d);
-  if (corner) return;
+      hysteretic_shape(value("kh_npm"), value("dy_m"), bilinear ? kBilinear : value("exponent"),
+                       bilinear ? 0.5 : value("beta"), d);
+  if (bilinear) return;
   if (effect.kind == EffectKind::pinching) {
     e.parameters.push_back(bounded_parameter(value("slip_ratio"), 0.02, 0.0, 0.99));
     e.parameters.push_back(logarithmic_parameter(value("slip_width"), 0.05, 50));

@@ -104,7 +104,7 @@ Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
   return run.good ? run.model : model;
 }
 
-Trial sharpened(const TrialContext& c, const Trial& trial, const Model& from) {
+Trial refined(const TrialContext& c, const Trial& trial, const Model& from) {
   Model start = from;
   free_shapes(start);
   FitResult run = c.fitter.fit(start, {}, thorough(start, kSharpSteps));
@@ -124,7 +124,7 @@ FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
   return more.good && more.cost < out.cost ? more : out;
 }
 
-bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now) {
+bool remove_redundant(const Fitter& fitter, const Model& before, FitResult& now) {
   Model start = now.model;
   start.effects.resize(before.effects.size());
   start.free_gain = before.free_gain;
@@ -142,15 +142,15 @@ double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
   return gaps[0] / gaps[1];
 }
 
-bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
-                   const Parallel& parallel) {
+bool is_redundant(const Fitter& fitter, const Model& with, const Model& without,
+                  const Parallel& parallel) {
   const double first = free_run_fit(fitter, {without}, kRoughSteps, false).gap;
   if (rms_gap(fitter, with) < kClearly * first) return false;
   return gap_ratio(fitter, with, without, parallel) > kNothing;
 }
 
-void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,
-                             FitResult& now) {
+void remove_earlier_redundant(const Fitter& fitter, std::vector<FoundEffect>& effects,
+                              FitResult& now) {
   for (std::size_t i = 0; i + 1 < effects.size(); ++i) {
     const int index = effects[i].index;
     if (index < 0 || now.model.effects[static_cast<std::size_t>(index)].element_law()) continue;

@@ -13,7 +13,7 @@ namespace framewatch::estimator {
 
 /// Refines a trial, starting from `from`, with the shape of hysteresis free. Returns the trial
 /// unchanged if that is not better.
-Trial sharpened(const TrialContext& context, const Trial& trial, const Model& from);
+Trial refined(const TrialContext& context, const Trial& trial, const Model& from);
 
 /// Returns a model fitted to the record with the smallest relative misfit. A strongly nonlinear law
 /// may converge there where a fit to all records does not.
@@ -35,7 +35,7 @@ FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
 /// Removes the effects that `now` has beyond the model `before` if refitting without them gives the
 /// same cost. After an unfinished fit a redundant effect looks useful. Returns true if they were
 /// removed.
-bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now);
+bool remove_redundant(const Fitter& fitter, const Model& before, FitResult& now);
 
 /// Returns the mean gap of a model with an effect over that of one without, both fitted by
 /// judged_fit().
@@ -45,12 +45,12 @@ double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
 /// Returns true if adding the effect does not reduce the gap of the free run. Each model is fitted
 /// by judged_fit(). A spurious effect can improve the equations of a slightly wrong law, but not
 /// the free run's motion.
-bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
-                   const Parallel& parallel);
+bool is_redundant(const Fitter& fitter, const Model& with, const Model& without,
+                  const Parallel& parallel);
 
 /// Removes masses, springs and dampers that the last of the effects makes redundant.
-void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,
-                             FitResult& now);
+void remove_earlier_redundant(const Fitter& fitter, std::vector<FoundEffect>& effects,
+                              FitResult& now);
 
 /// Refits a model with masses, gains and clocks held at their declared values (except those that
 /// are effects) and with the exponents of the catalog's laws.

@@ -134,7 +134,7 @@ std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Loca
 
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,
                                    double needed, double& bound) {
-  context.progress("two places");
+  context.progress("pairs of places");
   const Localisation& best = located.places.front();
   const std::vector<Localisation> pairs =
       locate_pairs(context.fitter, context.now, located.once, context.parallel);

@@ -45,7 +45,7 @@ constexpr double kExplainsMost = 0.9;  ///< that share if the rest is within cha
 constexpr double kNearest = 0.8;       ///< that share for the nearest law
 constexpr double kSharp = 0.995;       ///< share above which a fit need not be refined
 constexpr double kBlunt = 0.4;         ///< share below which refining does not pay
-constexpr std::size_t kSharpened = 3;
+constexpr std::size_t kRefined = 3;
 /// Times the best cost, or its excess beyond chance: trials above either are not refined.
 constexpr double kHopeless = 4;
 constexpr double kBehind = 2;    ///< reductions that are more than chance
@@ -66,29 +66,29 @@ double limit_of(const Trial& best, double enough) {
 /// Refines the leading trials with everything free. enough: cost above which more than chance is
 /// left; needed: a reduction that is more than chance. Trials far behind the best one are not
 /// rivals.
-void sharpen(const TrialContext& context, double enough, double needed,
-             std::vector<Trial>& trials) {
+void refine_leading(const TrialContext& context, double enough, double needed,
+                    std::vector<Trial>& trials) {
   const Trial& best = trials.front();
   const bool done = best.cost <= enough && !is_arbitrary_force(best);
   const double limit = done ? best.cost + kBehind * needed : limit_of(best, enough);
-  run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
+  run_all(context.parallel, static_cast<int>(std::min(kRefined, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
     if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit) return;
     const bool late = ends_with_harmonic(t.model) && t.cost > enough;
-    if (t.sharpened || !(late || t.fraction < kSharp)) return;
-    t = sharpened(context, t, t.model);
-    t.sharpened = true;
+    if (t.refined || !(late || t.fraction < kSharp)) return;
+    t = refined(context, t, t.model);
+    t.refined = true;
   });
 }
 
 /// Refits the leading trials, starting from a fit to the record with the weakest effect.
 void approach(const TrialContext& context, double enough, std::vector<Trial>& trials) {
   const double limit = limit_of(trials.front(), enough);
-  run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
+  run_all(context.parallel, static_cast<int>(std::min(kRefined, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
     if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit || t.approached)
       return;
-    t = sharpened(context, t, fitted_to_the_weakest(context, t.model));
+    t = refined(context, t, fitted_to_the_weakest(context, t.model));
     t.approached = true;
   });
 }
@@ -151,7 +151,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
     for (Trial& t : trials) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1e-9);
   };
   rank();
-  sharpen(context, bound + needed, needed, trials);
+  refine_leading(context, bound + needed, needed, trials);
   rank();
   if (trials.front().fraction < kExplains) {
     approach(context, bound + needed, trials);
@@ -165,7 +165,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
   return most && now.cost - best.cost > needed && !worsens(best, now, needed);
 }
 
-bool choose_again(const TrialContext& context, FoundEffect& effect, FitResult& now) {
+bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitResult& now) {
   if (effect.index < 0 || effect.chosen.second) return false;
   const auto index = static_cast<std::size_t>(effect.index);
   const std::vector<const Trial*> others = rivals_of(effect);

@@ -29,6 +29,6 @@ bool worsens(const Trial& trial, const FitResult& now, double chance);
 /// replacement in the present model. The first comparison knew neither the form of the damping nor
 /// other effects. Keeps the best of them in `effect` and `now`, and lowers the confidence
 /// accordingly. Returns true if a replacement won.
-bool choose_again(const TrialContext& context, FoundEffect& effect, FitResult& now);
+bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitResult& now);
 
 }  // namespace framewatch::estimator

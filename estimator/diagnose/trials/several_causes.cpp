@@ -21,11 +21,11 @@ namespace {
 using Members = std::vector<std::size_t>;
 
 constexpr std::size_t kMaxTried = 9, kFewestTried = 3, kMaxCauses = 3;
-constexpr std::size_t kMaxWork = 60;  ///< laws times equations
-constexpr std::size_t kKept = 3;      ///< sets of one size that are extended
-constexpr std::size_t kFinished = 6;  ///< sets that are fitted to convergence
-constexpr double kTakes = 0.9;        ///< largest gap with one cause over that without any
-constexpr double kTakesToo = 0.95;    ///< largest gap with one more: a tenth of the misfit's power
+constexpr std::size_t kMaxWork = 60;   ///< laws times equations
+constexpr std::size_t kKept = 3;       ///< sets of one size that are extended
+constexpr std::size_t kFinished = 6;   ///< sets that are fitted to convergence
+constexpr double kWithOneCause = 0.9;  ///< largest gap with one cause over that without any
+constexpr double kWithOneMore = 0.95;  ///< largest gap with one more: a tenth of the misfit's power
 constexpr double kNearly = 1.1;    ///< gap over the best's, below which a set does nearly as well
 constexpr double kMinShare = 0.1;  ///< of the design, of a start's stiffness or damping
 constexpr double kLittle = 0.1;    ///< of the size that an effect has in its trial
@@ -123,14 +123,14 @@ class Selection {
     CauseSet best = none_;
     std::vector<CauseSet> kept{none_};
     for (std::size_t size = 1; size <= kMaxCauses && !kept.empty(); ++size) {
-      context_.progress("several causes together");
+      context_.progress("several causes");
       kept = larger(kept);
       const auto leads =
           std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });
       if (leads != kept.end() && is_worth(*leads, best)) best = *leads;
       if (kept.size() > kKept) kept.resize(kKept);
     }
-    return result(without_needless(std::move(best)));
+    return result(without_redundant(std::move(best)));
   }
 
  private:
@@ -151,14 +151,14 @@ class Selection {
 
   CauseSet finished(const CauseSet& s) const {
     std::vector<Model> starts{s.model};
-    if (std::optional<Model> again = begun_anew(s)) starts.push_back(std::move(*again));
+    if (std::optional<Model> again = restarted(s)) starts.push_back(std::move(*again));
     return judged(s.members, free_run_fit(train_, starts, kJointSteps, true).model);
   }
 
   /// Returns the set's model with the trials' shapes where shapes have reached their bounds,
   /// because the fit may have passed other minima on the way. Returns nullopt if no shape has
   /// reached a bound.
-  std::optional<Model> begun_anew(const CauseSet& s) const {
+  std::optional<Model> restarted(const CauseSet& s) const {
     Model out = s.model;
     bool any = false;
     for (std::size_t i = 0; i < s.members.size(); ++i) {
@@ -187,8 +187,8 @@ class Selection {
   /// half as much in the held-out ones.
   static bool is_worth(const CauseSet& larger, const CauseSet& s) {
     const auto more = static_cast<int>(larger.members.size() - s.members.size());
-    const double takes =
-        s.members.empty() ? kTakes * std::pow(kTakesToo, more - 1) : std::pow(kTakesToo, more);
+    const double takes = s.members.empty() ? kWithOneCause * std::pow(kWithOneMore, more - 1)
+                                           : std::pow(kWithOneMore, more);
     return larger.all < takes * s.all && larger.held_out < 0.5 * (1 + takes) * s.held_out;
   }
 
@@ -287,12 +287,12 @@ class Selection {
   }
 
   /// Removes redundant members.
-  CauseSet without_needless(CauseSet best) const {
+  CauseSet without_redundant(CauseSet best) const {
     for (std::size_t i = 0; i < best.members.size() && best.members.size() > 1;) {
       CauseSet less = without(best, i);
-      const bool needless = may_lead(less) && !is_worth(best, less);
-      if (needless) best = std::move(less);
-      i = needless ? 0 : i + 1;
+      const bool redundant = may_lead(less) && !is_worth(best, less);
+      if (redundant) best = std::move(less);
+      i = redundant ? 0 : i + 1;
     }
     return best;
   }

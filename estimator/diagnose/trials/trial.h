@@ -35,7 +35,7 @@ struct Trial {
   Model model;
   /// A second effect that was fitted together with the first.
   std::optional<std::pair<EffectKind, EffectPlace>> second;
-  bool sharpened = false, approached = false;  ///< select_trial() refines a trial once in each way
+  bool refined = false, approached = false;  ///< select_trial() refines a trial once in each way
 };
 
 /// Shared by all trials of a round.

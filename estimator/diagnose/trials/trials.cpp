@@ -94,8 +94,8 @@ bool ends_with_friction(const Model& model) {
 
 /// Fits friction of elements from separate start values, because measured motion may mislead its
 /// fit.
-void begin_friction_anew(const TrialContext& c, const std::vector<Candidate>& candidates,
-                         std::vector<Fitted>& kept, std::vector<FitResult>& runs) {
+void refit_friction(const TrialContext& c, const std::vector<Candidate>& candidates,
+                    std::vector<Fitted>& kept, std::vector<FitResult>& runs) {
   std::vector<Fitted> anew(candidates.size());
   run_all(c.parallel, static_cast<int>(candidates.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
@@ -126,7 +126,7 @@ void begin_friction_anew(const TrialContext& c, const std::vector<Candidate>& ca
 
 /// Returns `now` plus the effects and freed readings that only `other` has, with amplitudes scaled
 /// by `size`.
-Model with_new(const Model& now, const Model& other, double size) {
+Model with_effects_of(const Model& now, const Model& other, double size) {
   Model out = now;
   for (std::size_t e = now.effects.size(); e < other.effects.size(); ++e) {
     out.effects.push_back(other.effects[e]);
@@ -149,8 +149,8 @@ double least_cost(const TrialContext& c, const std::vector<FitResult>& runs) {
 /// Fits the candidates again from the present model, with their full effects or small ones. Earlier
 /// laws were fitted to free runs; driven by measured, noisy motion they mislead the fit of the
 /// building.
-void begin_beside_laws(const TrialContext& c, const std::vector<Fitted>& kept,
-                       std::vector<FitResult>& runs) {
+void refit_from_present(const TrialContext& c, const std::vector<Fitted>& kept,
+                        std::vector<FitResult>& runs) {
   const std::vector<ModelEffect>& found = c.now.model.effects;
   if (std::none_of(found.begin(), found.end(),
                    [](const ModelEffect& e) { return e.element_law(); }))
@@ -163,8 +163,8 @@ void begin_beside_laws(const TrialContext& c, const std::vector<Fitted>& kept,
     options.max_steps = 0;
     FitResult from;
     for (const double size : {1.0, 0.1}) {
-      FitResult one =
-          c.fitter.fit(with_new(c.now.model, kept[at].fit.model, size), c.now.motion, options);
+      FitResult one = c.fitter.fit(with_effects_of(c.now.model, kept[at].fit.model, size),
+                                   c.now.motion, options);
       if (is_better(one, from)) from = std::move(one);
     }
     if (!from.good || from.cost > kCostLimit * least) return;
@@ -198,7 +198,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
   if (!c.fitter.plant().is_large() && least_cost(c, runs) > kNothingFound * c.now.cost)
-    begin_friction_anew(c, candidates, kept, runs);
+    refit_friction(c, candidates, kept, runs);
   const double least = least_cost(c, runs);
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
@@ -207,7 +207,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion, full_fit(runs[at].model));
     if (on.good && on.cost < runs[at].cost) runs[at] = on;
   });
-  begin_beside_laws(c, kept, runs);
+  refit_from_present(c, kept, runs);
   for (std::size_t at = 0; at < kept.size(); ++at) {
     const Fitted& f = kept[at];
     const bool good = runs[at].good;

@@ -10,7 +10,7 @@
 
 #include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/fit/judged_fit.h"
-#include "estimator/diagnose/fit/noise_colour.h"
+#include "estimator/diagnose/fit/noise_corner.h"
 #include "estimator/diagnose/propose/law_kind.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
@@ -38,8 +38,8 @@ bool is_dissipative(EffectKind law) {
   return is_of_kind(law, LawKind::dissipative);
 }
 
-std::vector<Proposal> of_sort(const TrialContext& c, std::vector<Proposal> all,
-                              bool (*wanted)(EffectKind), std::size_t most) {
+std::vector<Proposal> select_proposals(const TrialContext& c, std::vector<Proposal> all,
+                                       bool (*wanted)(EffectKind), std::size_t most) {
   std::erase_if(all, [&](const Proposal& p) { return !wanted(p.kind) || is_excluded(c, p.kind); });
   if (all.size() > most) all.resize(most);
   return all;
@@ -48,13 +48,13 @@ std::vector<Proposal> of_sort(const TrialContext& c, std::vector<Proposal> all,
 /// Returns trials that combine a law of the deformation and a dissipative law at an element, best
 /// first. The elastic force of a part does not determine its damping, nor the reverse. Hysteresis
 /// is both, so it is left out. context: of the model without a law there.
-std::vector<Trial> trials_of_two_sorts(const TrialContext& c, const EffectPlace& element) {
+std::vector<Trial> trials_of_combined_laws(const TrialContext& c, const EffectPlace& element) {
   const std::optional<Localisation> here = localise_element(c.fitter, c.now, element);
   if (!here) return {};
   const std::vector<Proposal> all = propose(c.fitter, *here, 0);
   std::vector<Trial> out =
-      try_together(c, *here, of_sort(c, all, is_of_deformation, kOfDeformation),
-                   of_sort(c, all, is_dissipative, kDissipative));
+      try_together(c, *here, select_proposals(c, all, is_of_deformation, kOfDeformation),
+                   select_proposals(c, all, is_dissipative, kDissipative));
   select_trial(c, here->misfit, 0, out);
   std::erase_if(out, [](const Trial& t) { return t.outcome != TrialOutcome::fitted; });
   return out;
@@ -124,7 +124,7 @@ void sort_by_cost(std::vector<Trial>& trials) {
 
 /// Continues the fit of every trial, at most `steps`. Trials that cannot be fitted get infinite
 /// cost.
-void fit_on(const TrialContext& c, int steps, std::vector<Trial>& trials) {
+void continue_fits(const TrialContext& c, int steps, std::vector<Trial>& trials) {
   run_all(c.parallel, static_cast<int>(trials.size()), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
     FitOptions options;
@@ -149,9 +149,9 @@ std::vector<Trial> wrong_labels(const TrialContext& c) {
       c.now.total_misfit() < kFarOff * expected)
     return {};
   std::vector<Trial> trials = all_labels(c);
-  fit_on(c, 0, trials);
+  continue_fits(c, 0, trials);
   if (trials.size() > kLabelsFitted) trials.resize(kLabelsFitted);
-  fit_on(c, kLabelSteps, trials);
+  continue_fits(c, kLabelSteps, trials);
   std::erase_if(trials, [](const Trial& t) { return !(t.cost < 1e300); });
   if (trials.empty() || trials.front().cost > kMaxLeft * c.now.cost) return {};
   for (Trial& t : trials) t.fraction = (c.now.cost - t.cost) / std::max(c.now.cost - expected, 1.0);
@@ -159,8 +159,8 @@ std::vector<Trial> wrong_labels(const TrialContext& c) {
 }
 
 constexpr int kPolishSteps = 6, kBackSteps = 8;
-constexpr double kTakesSome = 0.95;  ///< gap with a law over that without
-constexpr double kMaxGone = 0.1;     ///< of the misfit beyond noise that remains
+constexpr double kWithBoth = 0.95;  ///< gap with a law over that without
+constexpr double kMaxGone = 0.1;    ///< of the misfit beyond noise that remains
 
 class Diagnoser {
  public:
@@ -187,17 +187,17 @@ class Diagnoser {
     }
     search_.complete(now);
     search_.set_linear(now);
-    progress_.begin("labels", 0.02, 0.05);
+    progress_.begin("channel labels", 0.02, 0.05);
     const std::vector<Trial> labels = wrong_labels(search_.context_of(now));
     if (!labels.empty()) search_.adopt(labels, now);
     search_.run(now);
-    progress_.begin("what stays", 0.75, 0.8);
+    progress_.begin("checks", 0.75, 0.8);
     withdraw_other_kind(now);
-    const bool several = find_several(now) && !find_beside_several(now);
+    const bool several = find_several(now) && !find_further(now);
     if (out_.effects.empty()) name_nearest(now);
-    find_two_sorts(now);
+    find_combined_laws(now);
     if (!out_.effects.empty() && !several) {
-      drop_what_takes_nothing(now);
+      drop_redundant(now);
       polish(now);
     }
     name_by_shape(search_.context_of(now), out_.effects);
@@ -223,15 +223,15 @@ class Diagnoser {
   }
 
   /// Removes effects of low confidence whose removal leaves fit or gap as good.
-  void drop_what_takes_nothing(FitResult& now) {
+  void drop_redundant(FitResult& now) {
     while (out_.effects.size() > 1) {
       const bool fits = search_.ratio(now) < 1 + chance_of(fitter_, now.model);
       if (fits && out_.effects.back().confidence > kDoubtful) return;
       const Model less = with_first(now.model, out_.effects, out_.effects.size() - 1, plant_);
       FitResult fitted = fit_to_the_end(fitter_, less, now.motion);
       if (!fitted.good) return;
-      const bool needless = fitted.cost < now.cost + kMinGain;
-      if (!needless && !takes_nothing(fitter_, now.model, fitted.model, options_.parallel)) return;
+      const bool redundant = fitted.cost < now.cost + kMinGain;
+      if (!redundant && !is_redundant(fitter_, now.model, fitted.model, options_.parallel)) return;
       out_.effects.pop_back();
       now = std::move(fitted);
     }
@@ -239,15 +239,15 @@ class Diagnoser {
 
   /// For a component, replaces the law by laws of two sorts if that explains a tenth of the
   /// remaining power. Hysteresis is of both sorts.
-  void find_two_sorts(FitResult& now) {
+  void find_combined_laws(FitResult& now) {
     if (plant_.equations() != 1 || out_.effects.size() != 1 || search_.ratio(now) < kNearNoise ||
         is_of_kind(out_.effects.front().chosen.kind, LawKind::hysteretic))
       return;
     FitResult linear = fit(out_.linear, {}, kBackSteps);
     const std::vector<Trial> trials =
-        trials_of_two_sorts(search_.context_of(linear), out_.effects.front().chosen.place);
+        trials_of_combined_laws(search_.context_of(linear), out_.effects.front().chosen.place);
     if (trials.empty() || worsens(trials.front(), now, 0) ||
-        gap_ratio(fitter_, trials.front().model, now.model, options_.parallel) > kTakesSome)
+        gap_ratio(fitter_, trials.front().model, now.model, options_.parallel) > kWithBoth)
       return;
     out_.effects.clear();
     search_.adopt(trials, linear);
@@ -328,7 +328,7 @@ class Diagnoser {
   }
 
   /// Searches for a further effect once several causes explain most of the misfit.
-  bool find_beside_several(FitResult& now) {
+  bool find_further(FitResult& now) {
     if (plant_.is_large() || search_.ratio(now) - 1 > kMaxGone * (out_.ratio_before - 1))
       return false;
     const Diagnosis before = out_;

@@ -62,7 +62,7 @@ struct Diagnosis {
 
 /// Reports progress. what: the current work; done: share of the whole that is done, 0 to 1; then:
 /// share when the work that begins now is done.
-using TellProgress = std::function<void(const std::string& what, double done, double then)>;
+using ReportProgress = std::function<void(const std::string& what, double done, double then)>;
 
 struct DiagnosisOptions {
   Tolerances tolerances;
@@ -71,8 +71,8 @@ struct DiagnosisOptions {
   std::vector<Effect> known;        ///< effects that the building is known to have
   std::vector<EffectKind> without;  ///< excluded names
   Parallel parallel;                ///< the result does not depend on it
-  Parallel within;        ///< for the pieces of one call of `parallel`, and between its calls
-  TellProgress progress;  ///< between the calls of `parallel`
+  Parallel within;          ///< for the pieces of one call of `parallel`, and between its calls
+  ReportProgress progress;  ///< between the calls of `parallel`
 };
 
 /// Describes the signal that each place needs: its time, frequencies and size. For the first

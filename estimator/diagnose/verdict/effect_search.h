@@ -26,8 +26,8 @@ inline constexpr RoundShares kRounds[] = {{0.05, 0.15, 0.5}, {0.5, 0.57, 0.7}, {
 /// early.
 class SearchProgress {
  public:
-  /// tell: empty: reports nothing.
-  SearchProgress(TellProgress tell, Parallel parallel);
+  /// report: empty: reports nothing.
+  SearchProgress(ReportProgress report, Parallel parallel);
   SearchProgress(const SearchProgress&) = delete;
   SearchProgress& operator=(const SearchProgress&) = delete;
 
@@ -36,15 +36,15 @@ class SearchProgress {
   /// gets half of the rest.
   void begin(const std::string& what, double from, double to, std::vector<double> calls = {});
   /// Reports the current work of the stage.
-  void say(const std::string& what);
+  void describe(const std::string& what);
   /// Returns `parallel` with progress reports. Must not outlive this object.
   Parallel counted();
 
  private:
   void run(int count, const std::function<void(int)>& work);
-  void tell(double then) const;
+  void report(double then) const;
 
-  TellProgress tell_;
+  ReportProgress report_;
   Parallel parallel_;
   std::string what_;
   double from_ = 0, to_ = 0, done_ = 0;
@@ -86,16 +86,17 @@ class EffectSearch {
  private:
   void search_with_free_damping(FitResult& now);
   void look_ahead(FitResult& now);
-  void choose_laws_again(FitResult& now);
-  void colour_by_place(FitResult& now, Located& located);
+  void replace_laws(FitResult& now);
+  void set_noise_by_place(FitResult& now, Located& located);
   void fit_with_corner(double corner_hz, FitResult& now);
-  bool holds(const TrialContext& context, double bound, double needed, std::vector<Trial>& trials);
-  bool find_beside_at(const Trial& lead, FitResult& now);
-  bool explains_beside(const Trial& lead, FitResult& now);
+  bool accepts(const TrialContext& context, double bound, double needed,
+               std::vector<Trial>& trials);
+  bool find_second_law_at(const Trial& lead, FitResult& now);
+  bool explains_with_second(const Trial& lead, FitResult& now);
   bool one_round(FitResult& now, std::size_t round);
   std::vector<Trial> trials_of(const FitResult& now, const Located& located, std::size_t round,
-                               bool small, bool& holds);
-  bool adopt_held(const std::vector<Trial>& trials, FitResult& now);
+                               bool small, bool& found);
+  bool adopt_accepted(const std::vector<Trial>& trials, FitResult& now);
   bool find_mass(FitResult& now, const Located& located);
   void withdraw(FitResult& now, std::size_t first);
 

@@ -57,7 +57,7 @@ namespace {
 
 /// Returns true if the trial is an arbitrary force although the likeliest place is an element whose
 /// force follows its motion.
-bool is_needless_force(const Trial& trial, const std::vector<WhereEntry>& where) {
+bool is_redundant_force(const Trial& trial, const std::vector<WhereEntry>& where) {
   const std::vector<ModelEffect>& effects = trial.model.effects;
   if (effects.empty() || effects.back().form != LawForm::broadband || where.empty() ||
       !where.front().kind)
@@ -69,7 +69,7 @@ bool is_needless_force(const Trial& trial, const std::vector<WhereEntry>& where)
 }  // namespace
 
 bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where, double left) {
-  if (is_needless_force(law, where)) return true;
+  if (is_redundant_force(law, where)) return true;
   const auto is = [&](LawKind kind) { return is_of_kind(law.kind, kind); };
   const bool of_deformation = is_of_deformation(law.kind);
   const bool other =

@@ -224,9 +224,9 @@ bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
   for (const FoundEffect& e : out.effects) out.rejected.push_back(e.chosen);
   out.effects.clear();
   out.reason =
-      worse ? "the model with what was found is worse than the one without"
-            : "the law that comes nearest leaves too much for one that is not known to be of "
-              "the kind of force at its place";
+      worse ? "the model with the effects found is worse than the model without them"
+            : "the nearest law leaves too large a gap, and is not known to be of the kind of "
+              "force at its place";
   out.after = out.before;
   out.after_of_all = false;
   out.ratio_after = out.ratio_before;
@@ -267,9 +267,10 @@ void judge(const Fitter& fitter, Diagnosis& out) {
     out.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
     if (!adequate && out.reason.empty() && fits_separately(fitter, out.linear, out.ratio_before))
       out.reason =
-          "each record alone fits a linear building, all of them together do not: they are of "
-          "different buildings, or the building changed between them; measure both in one state of "
-          "it, or diagnose the records of each state alone";
+          "each record alone fits a linear building, but all together do not: they are of "
+          "different "
+          "buildings, or the building changed between them; diagnose the records of each state "
+          "alone, or measure again in one state";
     return;
   }
   const double fraction =

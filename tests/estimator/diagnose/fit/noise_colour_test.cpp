@@ -1,4 +1,4 @@
-#include "estimator/diagnose/fit/noise_colour.h"
+#include "estimator/diagnose/fit/noise_corner.h"
 
 #include <cmath>
 
@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What colour_noise() makes of the linear model's fit to records.
+/// What fit_noise_corner() makes of the linear model's fit to records.
 struct Coloured {
   test::Recorded recorded;
   FitResult now;
@@ -25,12 +25,12 @@ struct Coloured {
 
   explicit Coloured(const std::vector<MatrixXd>& records)
       : recorded(records), now(recorded.linear()), misfit_before(misfit()) {
-    is = colour_noise(recorded.fitter, recorded.segments, now);
+    is = fit_noise_corner(recorded.fitter, recorded.segments, now);
   }
   double misfit() const { return now.total_misfit() / recorded.fitter.expected(now.model); }
 };
 
-TEST(NoiseColour, IsFoundWhereNothingElseIsMissing) {
+TEST(NoiseCorner, IsFoundWhereNothingElseIsMissing) {
   constexpr double kCorner_hz = 20;
   const Coloured c(test::with_flicker(test::records_with({}, {1, 2}), kCorner_hz));
   EXPECT_GT(c.misfit_before, 1.5);
@@ -39,13 +39,13 @@ TEST(NoiseColour, IsFoundWhereNothingElseIsMissing) {
   EXPECT_NEAR(c.misfit(), 1, 0.1);
 }
 
-TEST(NoiseColour, IsNoneOfWhiteNoise) {
+TEST(NoiseCorner, IsNoneOfWhiteNoise) {
   const Coloured c(test::records_with({}, {1, 2}));
   EXPECT_FALSE(c.is);
   EXPECT_EQ(c.recorded.segments.front().corner_hz, 0);
 }
 
-TEST(NoiseColour, DoesNotStandInForAMissingEffect) {
+TEST(NoiseCorner, DoesNotStandInForAMissingEffect) {
   for (const double gain : {1.05, 1.2}) {
     std::vector<MatrixXd> records = test::records_with({}, {1, 2});
     for (MatrixXd& record : records) record.col(1) *= gain;
@@ -57,7 +57,7 @@ TEST(NoiseColour, DoesNotStandInForAMissingEffect) {
   }
 }
 
-TEST(NoiseColour, WeighsBinsOfLowFrequencyLess) {
+TEST(NoiseCorner, WeighsBinsOfLowFrequencyLess) {
   const test::Recorded recorded(test::records_with({}, {1}));
   RecordSegment segment = recorded.segments.front();
   const Model model = initial_model(recorded.plant);

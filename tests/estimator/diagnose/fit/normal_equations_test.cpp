@@ -136,7 +136,7 @@ TEST(NormalEquations, PriorPullsTowardsWhatIsBelieved) {
     const Unknown& unknown = at.unknowns[u];
     const auto i = static_cast<Index>(u);
     EXPECT_NEAR(at.prior[i], at.level / (2 * unknown.sigma * unknown.sigma), 1e-9 * at.level);
-    EXPECT_NEAR(at.pull[i], at.prior[i] * (unknown.centre - value_of(c.model, unknown)),
+    EXPECT_NEAR(at.pull[i], at.prior[i] * (unknown.center - value_of(c.model, unknown)),
                 1e-9 * at.level);
   }
   EXPECT_LT(at.pull[0], 0);

@@ -81,9 +81,9 @@ TEST(Unknowns, BeginAtTheMiddleOfWhatIsBelieved) {
   const Plant plant = small.plant();
   const Model model = initial_model(plant);
   for (const Unknown& u : unknowns_of(plant, model, {})) {
-    EXPECT_NEAR(value_of(model, u), u.centre, 1e-12) << u.index;
-    EXPECT_LT(u.low, u.centre);
-    EXPECT_GT(u.high, u.centre);
+    EXPECT_NEAR(value_of(model, u), u.center, 1e-12) << u.index;
+    EXPECT_LT(u.low, u.center);
+    EXPECT_GT(u.high, u.center);
     EXPECT_GT(u.sigma, 0);
   }
 }

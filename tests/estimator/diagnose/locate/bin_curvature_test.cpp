@@ -1,4 +1,4 @@
-#include "estimator/diagnose/locate/closer_look.h"
+#include "estimator/diagnose/locate/conjugate_step.h"
 
 #include <numeric>
 

@@ -40,7 +40,7 @@ TEST(LawsInItsStead, TheBetterOneStays) {
   FoundEffect effect = tried.found(false);
   FitResult now = tried.made.now;
   const double before = now.cost;
-  EXPECT_TRUE(choose_again(tried.made.context(), effect, now));
+  EXPECT_TRUE(choose_replacement(tried.made.context(), effect, now));
   EXPECT_EQ(effect.chosen.kind, EffectKind::cubic_stiffness);
   EXPECT_EQ(effect.index, 0);
   EXPECT_LT(now.cost, before);
@@ -50,7 +50,7 @@ TEST(LawsInItsStead, TheRightOneStaysAndIsSure) {
   Tried tried;
   FoundEffect effect = tried.found(true);
   FitResult now = tried.made.now;
-  EXPECT_FALSE(choose_again(tried.made.context(), effect, now));
+  EXPECT_FALSE(choose_replacement(tried.made.context(), effect, now));
   EXPECT_EQ(effect.chosen.kind, EffectKind::cubic_stiffness);
   EXPECT_GT(effect.confidence, kSure);
 }

@@ -20,14 +20,14 @@ TEST(TakesNothing, IsWhatNoMotionNeeds) {
   });
   ASSERT_NE(cubic, trials.end());
   const Fitter& fitter = made.recorded.fitter;
-  EXPECT_FALSE(takes_nothing(fitter, cubic->model, made.now.model, {}));
+  EXPECT_FALSE(is_redundant(fitter, cubic->model, made.now.model, {}));
   Model damped = cubic->model;
   ModelEffect damper;
   damper.form = LawForm::damper;
   damper.place = test::at_node(3);
   damper.parameters = {linear_parameter(0, 1e3)};
   damped.effects.push_back(damper);
-  EXPECT_TRUE(takes_nothing(fitter, damped, cubic->model, {}));
+  EXPECT_TRUE(is_redundant(fitter, damped, cubic->model, {}));
 }
 
 }  // namespace needless_test

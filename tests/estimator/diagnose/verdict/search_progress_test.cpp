@@ -9,7 +9,7 @@ struct Told {
   std::vector<std::string> what;
   std::vector<double> done, then;
 
-  TellProgress listener() {
+  ReportProgress listener() {
     return [this](const std::string& now, double share, double after) {
       what.push_back(now);
       done.push_back(share);
@@ -31,7 +31,7 @@ TEST(SearchProgress, TheWorkOfAStageCounts) {
   const Parallel counted = progress.counted();
   progress.begin("a", 0.2, 0.6, {0.5, 0.25});
   counted(2, nothing);
-  progress.say("b");
+  progress.describe("b");
   counted(1, nothing);
   counted(1, nothing);  // beyond those that are known: half of what is left
   expect_near(told.done, {0.2, 0.2, 0.4, 0.4, 0.4, 0.5, 0.5, 0.55});

@@ -30,6 +30,6 @@ void set_corner(double corner_hz, std::vector<RecordSegment>& segments);
 /// Checks if a fit leaves only noise that grows toward low frequencies (RecordSegment::corner_hz):
 /// equal in all equations and smooth over frequency. If so, sets the corner frequency in the
 /// segments, fits again and returns true. segments: those of the fitter.
-bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now);
+bool fit_noise_corner(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now);
 
 }  // namespace framewatch::estimator

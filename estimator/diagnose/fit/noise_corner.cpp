@@ -1,4 +1,4 @@
-#include "estimator/diagnose/fit/noise_colour.h"
+#include "estimator/diagnose/fit/noise_corner.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,36 +77,36 @@ void set_corner(double corner_hz, std::vector<RecordSegment>& segments) {
   for (RecordSegment& s : segments) s.corner_hz = corner_hz;
 }
 
-bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now) {
+bool fit_noise_corner(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now) {
   const Plant& plant = fitter.plant();
   const double misfit = now.total_misfit() / fitter.expected(now.model);
   // Motions that no axis reads, or a single equation, give too little evidence.
   if (plant.unread.cols() > 0 || plant.equations() < 2) return false;
   if (misfit < kMisfit || misfit > kLargestMisfit) return false;
   const double earlier_hz = segments.front().corner_hz;
-  FitResult coloured = now;
+  FitResult corrected = now;
   double spread = kPerhapsNoise;
   for (int i = 0; i <= kTimes; ++i) {
-    const std::vector<NoiseCell> cells = cells_of(fitter, coloured);
+    const std::vector<NoiseCell> cells = cells_of(fitter, corrected);
     if (cells.empty()) break;
     const double corner_hz = likeliest_corner_hz(cells);
     spread = spread_of(cells, corner_hz);
     if (corner_hz == 0 || spread > kPerhapsNoise || i == kTimes) break;
     if (std::abs(corner_hz - segments.front().corner_hz) < kSame * corner_hz) break;
     set_corner(corner_hz, segments);
-    FitResult again = fitter.fit(coloured.model, coloured.motion, thorough(now.model, kSteps));
+    FitResult again = fitter.fit(corrected.model, corrected.motion, thorough(now.model, kSteps));
     if (!again.good) {
       spread = kPerhapsNoise;
       break;
     }
-    coloured = std::move(again);
+    corrected = std::move(again);
   }
   if (segments.front().corner_hz == earlier_hz) return false;
   if (spread > kLikeNoise) {
     set_corner(earlier_hz, segments);
     return false;
   }
-  now = std::move(coloured);
+  now = std::move(corrected);
   return true;
 }
 

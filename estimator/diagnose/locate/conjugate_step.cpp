@@ -1,4 +1,4 @@
-#include "estimator/diagnose/locate/closer_look.h"
+#include "estimator/diagnose/locate/conjugate_step.h"
 
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/spectra/row_gram.h"
@@ -153,9 +153,9 @@ void BinCurvature::add_times(Index bin, const RowMatrix& steps, RowMatrix& sum) 
   }
 }
 
-std::vector<CloserLook> closer_looks(const Linearised& at, const std::vector<Index>& kept,
-                                     const std::vector<std::vector<CandidatePlace>>& lists,
-                                     const std::vector<NormalEquations>& equations) {
+std::vector<ConjugateStep> conjugate_steps(const Linearised& at, const std::vector<Index>& kept,
+                                           const std::vector<std::vector<CandidatePlace>>& lists,
+                                           const std::vector<NormalEquations>& equations) {
   const auto count = static_cast<Index>(kept.size()), width = static_cast<Index>(lists.size());
   VectorXd prior(count), pull(count);
   for (Index i = 0; i < count; ++i) {
@@ -196,7 +196,7 @@ std::vector<CloserLook> closer_looks(const Linearised& at, const std::vector<Ind
       p.col(l) = z.col(l) + (rho[l] > 0 ? next[l] / rho[l] : 0) * p.col(l);
     rho = next;
   }
-  std::vector<CloserLook> out;
+  std::vector<ConjugateStep> out;
   for (Index l = 0; l < width; ++l) {
     const NormalEquations& own = equations[static_cast<std::size_t>(l)];
     const VectorXd step = x.col(l);

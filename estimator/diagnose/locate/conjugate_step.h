@@ -51,7 +51,7 @@ class BinCurvature {
 };
 
 /// One step of a fit with arbitrary signals, using the curvature of all bins.
-struct CloserLook {
+struct ConjugateStep {
   Eigen::VectorXd step;  ///< of the unknowns `kept`
   double left = 0;       ///< misfit after the step, by the linearised equations
 };
@@ -59,8 +59,9 @@ struct CloserLook {
 /// Computes for each list of places in a large building one step by conjugate gradients. The list's
 /// normal equations from sampled bins (without_sampled) are the start and the preconditioner.
 /// equations: of each list, summed over segments; their gradients and misfits include all bins.
-std::vector<CloserLook> closer_looks(const Linearised& at, const std::vector<Eigen::Index>& kept,
-                                     const std::vector<std::vector<CandidatePlace>>& lists,
-                                     const std::vector<NormalEquations>& equations);
+std::vector<ConjugateStep> conjugate_steps(const Linearised& at,
+                                           const std::vector<Eigen::Index>& kept,
+                                           const std::vector<std::vector<CandidatePlace>>& lists,
+                                           const std::vector<NormalEquations>& equations);
 
 }  // namespace framewatch::estimator
