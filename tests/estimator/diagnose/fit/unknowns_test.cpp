@@ -19,7 +19,7 @@ long count(const std::vector<Unknown>& unknowns, Kind kind) {
                        [&](const Unknown& u) { return u.kind == kind; });
 }
 
-/// A drift of two records, whose exponent-like value is held.
+/// Returns a drift of two records with a held parameter.
 Model with_drift(const Plant& plant) {
   ModelEffect drift = test::effect_of(LawForm::changing, test::frame_place(3), {-4e5}, {3, 2});
   drift.record_parameters.push_back({test::parameter_of(5), test::parameter_of(1)});

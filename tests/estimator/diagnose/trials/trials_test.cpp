@@ -8,8 +8,8 @@
 #include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/refit.h"
+#include "estimator/diagnose/trials/round_trials.h"
 #include "tests/estimator/diagnose/hand_made_trials.h"
 
 namespace framewatch::estimator {

@@ -6,7 +6,7 @@
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {
-namespace beside_place_test {
+namespace locate_test {
 
 constexpr double kCorner_hz = 4;
 
@@ -27,5 +27,5 @@ TEST(ColourBesideAPlace, IsNoneOfWhiteNoise) {
   EXPECT_EQ(r.segments.front().corner_hz, 0);
 }
 
-}  // namespace beside_place_test
+}  // namespace locate_test
 }  // namespace framewatch::estimator

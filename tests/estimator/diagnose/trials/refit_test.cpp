@@ -1,14 +1,37 @@
 #include "estimator/diagnose/trials/refit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/trials/known_effects.h"
+#include "estimator/diagnose/trials/trials.h"
+#include "tests/estimator/diagnose/hand_made_trials.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {
-namespace declared_test {
+namespace refit_test {
+
+TEST(TakesNothing, IsWhatNoMotionNeeds) {
+  const test::HandMade made(test::records_with(
+      {test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {1e10})}, {1, 2}));
+  const std::vector<Trial> trials =
+      try_places(made.context(), {made.recorded.freed(test::in_frame(1))});
+  const auto cubic = std::find_if(trials.begin(), trials.end(), [](const Trial& t) {
+    return t.outcome == TrialOutcome::fitted && t.kind == EffectKind::cubic_stiffness;
+  });
+  ASSERT_NE(cubic, trials.end());
+  const Fitter& fitter = made.recorded.fitter;
+  EXPECT_FALSE(is_redundant(fitter, cubic->model, made.now.model, {}));
+  Model damped = cubic->model;
+  ModelEffect damper;
+  damper.form = LawForm::damper;
+  damper.place = test::at_node(3);
+  damper.parameters = {linear_parameter(0, 1e3)};
+  damped.effects.push_back(damper);
+  EXPECT_TRUE(is_redundant(fitter, damped, cubic->model, {}));
+}
 
 using test::Recorded;
 
@@ -32,7 +55,7 @@ TEST(DeclaredModel, TakesBackWhatIsOnlyTolerated) {
   EXPECT_EQ(declared.mass_change, none.mass_change);
   EXPECT_EQ(declared.clock_s, none.clock_s);
   EXPECT_DOUBLE_EQ(declared.gain[0], 0);
-  // That of the effect stays, and is fitted beside masses as they are declared.
+  // The effect's gain stays, and is fitted with the declared masses.
   EXPECT_NEAR(declared.gain[1], kGain, kGainOff);
   const Eigen::VectorXd& truth = recorded.small.truth;
   for (int f = 0; f < 4; ++f) EXPECT_NEAR(declared.theta[f] / truth[f], 1, 0.02) << f;
@@ -55,5 +78,6 @@ TEST(DeclaredModel, ALawHasTheExponentOfItsName) {
   EXPECT_NEAR(law.parameters[0].plain() / std::pow(law.deformation, 3) / kSize_npm3, 1, kSizeOff);
 }
 
-}  // namespace declared_test
+}  // namespace refit_test
+
 }  // namespace framewatch::estimator

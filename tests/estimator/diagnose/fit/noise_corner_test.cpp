@@ -10,13 +10,13 @@
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {
-namespace noise_colour_test {
+namespace noise_corner_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What fit_noise_corner() makes of the linear model's fit to records.
+/// Result of fit_noise_corner() for the linear model's fit to records.
 struct Coloured {
   test::Recorded recorded;
   FitResult now;
@@ -69,5 +69,5 @@ TEST(NoiseCorner, WeighsBinsOfLowFrequencyLess) {
       << "the model's own error is white";
 }
 
-}  // namespace noise_colour_test
+}  // namespace noise_corner_test
 }  // namespace framewatch::estimator

@@ -10,7 +10,7 @@
 #include "tests/estimator/diagnose/exact_record.h"
 
 namespace framewatch::estimator {
-namespace bin_curvature_test {
+namespace conjugate_step_test {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
@@ -21,7 +21,7 @@ using test::Small;
 constexpr double kRounding = 1e-9;
 constexpr Index kBin = 17;
 
-/// With unknowns of stiffnesses, masses, readings, and of an effect.
+/// Has unknowns of stiffnesses, masses, readings, and of an effect.
 struct Case {
   Small small;
   Plant plant = small.plant();
@@ -44,7 +44,7 @@ struct Case {
     return out;
   }
 
-  /// Whitened columns of the bin, one after the other.
+  /// Returns the whitened columns of the bin, one after the other.
   MatrixXcd columns() const {
     MatrixXcd out(plant.equations(), static_cast<Index>(kept.size()));
     for (const Index u : kept)
@@ -52,7 +52,7 @@ struct Case {
     return out;
   }
 
-  /// A place of each kind alone, and two together.
+  /// Returns one place of each kind alone, and two together.
   std::vector<std::vector<CandidatePlace>> lists() const {
     std::vector<std::vector<CandidatePlace>> out;
     for (const CandidatePlace& place : candidate_places_of(plant, model))
@@ -79,7 +79,7 @@ TEST(BinCurvature, IsThatOfTheColumnsWithoutThePlaces) {
     const MatrixXcd rest = columns - basis * (basis.adjoint() * columns);
     const MatrixXd curvature = (rest.adjoint() * rest).real();
     const Eigen::VectorXd expected = curvature * steps.col(l);
-    // Units differ: each unknown is compared in those of its own column.
+    // Units differ, so each unknown is compared in units of its column.
     const Eigen::VectorXd size =
         columns.colwise().norm().transpose() * (columns.colwise().norm() * steps.col(l).cwiseAbs());
     for (Index u = 0; u < expected.size(); ++u)
@@ -105,5 +105,5 @@ TEST(BinProducts, OfRowsWithTheColumns) {
             kRounding * rows.norm() * residual.norm());
 }
 
-}  // namespace bin_curvature_test
+}  // namespace conjugate_step_test
 }  // namespace framewatch::estimator

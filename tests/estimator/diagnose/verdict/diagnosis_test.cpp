@@ -10,7 +10,7 @@
 #include "tests/estimator/diagnose/other_buildings.h"
 
 namespace framewatch::estimator {
-namespace where_test {
+namespace diagnosis_test {
 
 using test::Recorded;
 
@@ -25,7 +25,7 @@ Localisation at(const EffectPlace& place, double ratio) {
 TEST(Map, EveryPlaceOnceBestFirst) {
   Located located;
   located.places = {at(test::in_frame(1), 1.1), at(test::in_frame(0), 3)};
-  // After one step: the same places not as good, and others.
+  // After one step: the same places with larger ratios, and others.
   located.once = {at(test::in_frame(0), 2.5), at(test::in_frame(1), 1.6),
                   at(test::in_frame(2), 1.4), at(test::at_channel(1), 9),
                   at(test::in_frame(3), 1.4)};
@@ -85,7 +85,7 @@ TEST(Where, OnlyTheLikeliestPlacesAreDescribed) {
   }
 }
 
-/// What the upper floor of two needs along the first frame, beside an effect there.
+/// Returns the place of the upper of two floors along the first frame, with an effect there.
 WhereEntry of_upper_floor(EffectKind kind, PlaceKind at, std::initializer_list<double> values) {
   const test::Small small = test::tower(2);
   EffectPlace place = test::at_node(0);
@@ -113,5 +113,5 @@ TEST(Where, AFloorNeedsASortOfForceWhereItFollowsItsMotion) {
   EXPECT_FALSE(oscillator.kind) << "has a motion of its own";
 }
 
-}  // namespace where_test
+}  // namespace diagnosis_test
 }  // namespace framewatch::estimator

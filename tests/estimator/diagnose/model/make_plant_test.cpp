@@ -9,7 +9,7 @@
 #include "tests/estimator/diagnose/small_building.h"
 
 namespace framewatch::estimator {
-namespace partial_plant_test {
+namespace make_plant_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -18,7 +18,8 @@ using Eigen::VectorXd;
 constexpr double kRounding = 1e-9;
 constexpr double kRate_hz = 100;
 
-/// Twenty stories with two frames each way, rigid floors, three channels on floors 5, 10, 15, 20.
+/// Twenty stories with two frames in each direction, rigid floors, three channels on floors 5, 10,
+/// 15 and 20.
 struct InSpace {
   Structure structure = daemon::tall_building_in_space(20);
   VectorXd design = daemon::tall_design_in_space(20);
@@ -38,7 +39,7 @@ SensorAxis at_place(const char* name, int story, double x_m, double y_m, double 
 
 TEST(PartialPlant, EveryMotionIsReadOrUnread) {
   InSpace building;
-  // Floor 10 is left with its two translations.
+  // Floor 10 keeps its two translations.
   building.axes.erase(building.axes.begin() + 7);
   const Plant plant = building.plant();
   ASSERT_EQ(plant.equations(), 60);
@@ -48,7 +49,7 @@ TEST(PartialPlant, EveryMotionIsReadOrUnread) {
   all << plant.read, plant.unread;
   EXPECT_LT((all.transpose() * all - MatrixXd::Identity(60, 60)).norm(), kRounding);
 
-  // Whatever moves, what the axes read of it differs from it by unread motions alone.
+  // Any motion differs from what the axes read of it only by unread motions.
   Random random(3);
   VectorXd moved(60), readings = VectorXd::Zero(plant.axis_count());
   for (double& value : moved) value = random.normal();
@@ -102,7 +103,7 @@ TEST(PartialPlant, ABaseThatTurnsDrivesFramesByTheirPlaces) {
   building.axes.push_back(at_place("north", 0, 0, width, 0));
   building.axes.push_back(at_place("across", 0, 0, 0, M_PI / 2));
   const Plant plant = building.plant();
-  // One radian per s^2 about the south-west corner: x-parallel frames move by their distance.
+  // One radian per s^2 around the south-west corner: x-parallel frames move by their distance.
   VectorXd readings = VectorXd::Zero(plant.building.axes());
   readings[plant.axis_count() - 2] = -width;
   const VectorXd ground = plant.ground * readings;
@@ -150,5 +151,5 @@ TEST(PartialPlant, NeedsTheBaseInEveryDirectionThatIsMeasured) {
   EXPECT_FALSE(make_plant(building.structure, building.axes, building.design, kRate_hz));
 }
 
-}  // namespace partial_plant_test
+}  // namespace make_plant_test
 }  // namespace framewatch::estimator

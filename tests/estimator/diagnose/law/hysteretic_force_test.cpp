@@ -7,14 +7,14 @@
 #include "estimator/diagnose/law/law.h"
 
 namespace framewatch::estimator {
-namespace yielding_test {
+namespace hysteretic_force_test {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr Index kParts = 16;
 
-/// kParts of every step of a motion.
+/// Divides every step of a motion into kParts.
 VectorXd in_parts(const VectorXd& d) {
   VectorXd out(kParts * (d.size() - 1) + 1);
   for (Index i = 0; i < out.size(); ++i) {
@@ -47,5 +47,5 @@ TEST(Yielding, WhatHasYieldedEndsWhereSmallStepsDo) {
     }
 }
 
-}  // namespace yielding_test
+}  // namespace hysteretic_force_test
 }  // namespace framewatch::estimator

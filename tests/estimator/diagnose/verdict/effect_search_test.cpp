@@ -1,9 +1,14 @@
 #include "estimator/diagnose/verdict/effect_search.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/verdict/diagnose.h"
+#include "tests/estimator/diagnose/hidden_effect.h"
+
 namespace framewatch::estimator {
-namespace search_progress_test {
+namespace effect_search_test {
 
 struct Told {
   std::vector<std::string> what;
@@ -33,7 +38,7 @@ TEST(SearchProgress, TheWorkOfAStageCounts) {
   counted(2, nothing);
   progress.describe("b");
   counted(1, nothing);
-  counted(1, nothing);  // beyond those that are known: half of what is left
+  counted(1, nothing);  // beyond the listed calls: half of the rest
   expect_near(told.done, {0.2, 0.2, 0.4, 0.4, 0.4, 0.5, 0.5, 0.55});
   expect_near(told.then, {0.2, 0.4, 0.4, 0.4, 0.5, 0.5, 0.55, 0.55});
   EXPECT_EQ(told.what, (std::vector<std::string>{"a", "a", "a", "b", "b", "b", "b", "b"}));
@@ -63,5 +68,27 @@ TEST(SearchProgress, UsesTheParallelThatItHas) {
   EXPECT_EQ(done, 6);
 }
 
-}  // namespace search_progress_test
+Diagnosis diagnosed(const std::vector<Effect>& effects) {
+  const test::Recorded r(test::records_with(effects, {1, 2}));
+  return diagnose(r.plant, r.segments, test::held_out_from(1));
+}
+
+bool names(const Diagnosis& d, const Effect& effect) {
+  return std::any_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& found) {
+    return found.chosen.kind == effect.kind && found.chosen.place == effect.place;
+  });
+}
+
+TEST(TwoEffects, OneOfWhichChangesWithTimeMayBeAtOnePlace) {
+  const Effect friction =
+      test::effect_of(EffectKind::coulomb_friction, test::in_frame(1), {9e3, 0.004});
+  const Effect drop = test::effect_of(EffectKind::stiffness_drop, test::in_frame(1), {-1.6e6, 6});
+  const Diagnosis d = diagnosed({friction, drop});
+  EXPECT_EQ(d.effects.size(), 2U);
+  EXPECT_TRUE(names(d, friction));
+  EXPECT_TRUE(names(d, drop));
+}
+
+}  // namespace effect_search_test
+
 }  // namespace framewatch::estimator

@@ -5,7 +5,7 @@
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {
-namespace trial_relations_test {
+namespace trial_test {
 
 TEST(SameSpot, AStoryIsPartOfItsFrame) {
   EffectPlace whole;
@@ -48,5 +48,5 @@ TEST(CommonFrame, IsThatOfTwoStories) {
   EXPECT_EQ(common_frame(pair), -1);
 }
 
-}  // namespace trial_relations_test
+}  // namespace trial_test
 }  // namespace framewatch::estimator
