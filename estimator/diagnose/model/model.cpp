@@ -27,6 +27,11 @@ LawValues ModelEffect::law(std::size_t record) const {
   return out;
 }
 
+bool has_element_law(const Model& model) {
+  return std::any_of(model.effects.begin(), model.effects.end(),
+                     [](const ModelEffect& e) { return e.element_law(); });
+}
+
 Model initial_model(const Plant& plant) {
   Model out;
   out.theta = plant.design;

@@ -37,6 +37,9 @@ struct Model {
   std::vector<int> free_gain, free_clock;
 };
 
+/// Returns true if the model has an effect that is an element law.
+bool has_element_law(const Model& model);
+
 /// Returns the design with declared masses and gains and configured delays. Its only effects are
 /// the design's bending frames.
 Model initial_model(const Plant& plant);

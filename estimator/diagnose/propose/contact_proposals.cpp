@@ -35,13 +35,6 @@ void set_scales(const Fitter& fitter, const Localisation& place, ModelEffect& ef
     }
 }
 
-Proposal proposal_of(const Localisation& place, ModelEffect effect, EffectKind kind,
-                     double misfit) {
-  Proposal out{place.model, kind, effect.place, misfit};
-  out.model.effects.push_back(std::move(effect));
-  return out;
-}
-
 }  // namespace
 
 void add_contact_proposals(const Fitter& fitter, const Localisation& place,

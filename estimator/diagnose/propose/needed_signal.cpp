@@ -213,4 +213,11 @@ VectorXcd beyond_linear(const RecordSegment& s, const NeededSignal& needed) {
   return needed.without_ends(rest);
 }
 
+Proposal proposal_of(const Localisation& place, ModelEffect effect, EffectKind kind,
+                     double misfit) {
+  Proposal out{place.model, kind, effect.place, misfit};
+  out.model.effects.push_back(std::move(effect));
+  return out;
+}
+
 }  // namespace framewatch::estimator

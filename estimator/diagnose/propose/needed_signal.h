@@ -85,4 +85,8 @@ struct Proposal {
   double misfit = 0;  ///< of the scalar fit; ranks the proposals of one place
 };
 
+/// Returns a proposal that adds an effect to a localization's model. misfit: of the scalar fit.
+Proposal proposal_of(const Localisation& place, ModelEffect effect, EffectKind kind,
+                     double misfit = 0);
+
 }  // namespace framewatch::estimator

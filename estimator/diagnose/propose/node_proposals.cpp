@@ -176,9 +176,7 @@ Proposal harmonic_proposal(const Fitter& fitter, const Localisation& place,
     e.onset_s.push_back(best.onset_s);
     misfit += best.fit.misfit;
   }
-  Proposal out{place.model, EffectKind::unmeasured_force, node, misfit};
-  out.model.effects.push_back(std::move(e));
-  return out;
+  return proposal_of(place, std::move(e), EffectKind::unmeasured_force, misfit);
 }
 
 constexpr double kFollows = 0.3;  ///< share of a force beyond noise that laws must explain
@@ -230,9 +228,7 @@ void add_resonator(const Fitter& fitter, const Localisation& place,
     e.parameters = {bounded_parameter(mass, 0.02 * mass, 1e-6 * mass, 1e15),
                     logarithmic_parameter(chosen_hz, 0.3 * band.low_hz, 3 * band.high_hz),
                     logarithmic_parameter(chosen_h, 1e-3, 2)};
-    Proposal p{place.model, EffectKind::tuned_mass_damper, node, least.misfit};
-    p.model.effects.push_back(e);
-    out.push_back(p);
+    out.push_back(proposal_of(place, std::move(e), EffectKind::tuned_mass_damper, least.misfit));
   }
 }
 
@@ -316,9 +312,7 @@ void add_node_proposals(const Fitter& fitter, const Localisation& place,
   ModelEffect e;
   e.form = LawForm::broadband;
   e.place = node;
-  Proposal p{place.model, EffectKind::unmeasured_force, node, 0};
-  p.model.effects.push_back(e);
-  out.push_back(p);
+  out.push_back(proposal_of(place, std::move(e), EffectKind::unmeasured_force));
 }
 
 }  // namespace framewatch::estimator

@@ -97,9 +97,7 @@ void add_axis_proposals(const Fitter& fitter, const Localisation& place,
     e.place.kind = PlaceKind::channel_pair;
     e.place.with_channel = static_cast<int>(other);
     e.parameters = {bounded_parameter(0.0, 1e-3, -1.5, 1.5)};
-    Proposal p{place.model, EffectKind::misalignment, e.place, 0};
-    p.model.effects.push_back(e);
-    out.push_back(p);
+    out.push_back(proposal_of(place, std::move(e), EffectKind::misalignment));
   }
   for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
     double level = 0;
@@ -107,17 +105,9 @@ void add_axis_proposals(const Fitter& fitter, const Localisation& place,
     ModelEffect e;
     e.form = LawForm::clipped;
     e.place = here;
-    Proposal p{place.model, EffectKind::clipping, here, 0};
-    p.model.effects.push_back(e);
-    out.push_back(p);
+    out.push_back(proposal_of(place, std::move(e), EffectKind::clipping));
     break;
   }
-}
-
-Proposal with_effect(const Localisation& place, const ModelEffect& effect, EffectKind kind) {
-  Proposal out{place.model, kind, effect.place, 0};
-  out.model.effects.push_back(effect);
-  return out;
 }
 
 void add_masses(const Plant& plant, const Localisation& place, std::vector<Proposal>& out) {
@@ -126,7 +116,7 @@ void add_masses(const Plant& plant, const Localisation& place, std::vector<Propo
   e.form = LawForm::mass;
   e.place = place.candidate_places.front().place;
   e.parameters = {bounded_parameter(0.05 * typical, 0.01 * typical, -typical, 1e15)};
-  out.push_back(with_effect(place, e, EffectKind::extra_mass));
+  out.push_back(proposal_of(place, e, EffectKind::extra_mass));
 }
 
 /// Returns a flexibility of rotations that stores a twentieth of the elements' energy under the
@@ -154,7 +144,7 @@ void add_rotations(const Plant& plant, const Localisation& place, std::vector<Pr
     e.place = place.candidate_places.front().place;
     const double flexibility = small_flexibility(plant, place.model, e);
     e.parameters = {bounded_parameter(flexibility, 0.1 * flexibility, 0, 1e15)};
-    out.push_back(with_effect(
+    out.push_back(proposal_of(
         place, e, form == LawForm::rocking ? EffectKind::base_rocking : EffectKind::frame_bending));
   }
 }
@@ -167,7 +157,7 @@ void add_floors(const Plant& plant, const Localisation& place, std::vector<Propo
     e.place = place.candidate_places.front().place;
     e.parameters = {logarithmic_parameter(share * k, 1e-3 * k, 1e3 * k),
                     bounded_parameter(1e-3 * share * k, 1e-4 * share * k, 0, 1e15)};
-    out.push_back(with_effect(place, e, EffectKind::floor_flexibility));
+    out.push_back(proposal_of(place, e, EffectKind::floor_flexibility));
   }
 }
 
@@ -211,7 +201,7 @@ void add_links(const Fitter& fitter, const Localisation& place,
     ModelEffect e = link_at(fitter.plant(), place.candidate_places.front().place, spring);
     const ScalarFit fit = fit_of(fitter, place, needed, e);
     if (spring || fit.coefficients[0] > 0) e.parameters[0].value = fit.coefficients[0];
-    out.push_back(with_effect(place, e, kind_of_link(e)));
+    out.push_back(proposal_of(place, e, kind_of_link(e)));
     out.back().misfit = fit.misfit;
   }
 }
@@ -274,7 +264,7 @@ std::vector<Proposal> propose_linear(const Plant& plant, const Localisation& pla
   if (candidate.kind == CandidatePlace::Kind::link || above)
     for (const bool spring : {true, false}) {
       const ModelEffect e = link_at(plant, candidate.place, spring);
-      out.push_back(with_effect(place, e, kind_of_link(e)));
+      out.push_back(proposal_of(place, e, kind_of_link(e)));
     }
   return out;
 }

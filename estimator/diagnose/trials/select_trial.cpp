@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/free_run_start.h"
+#include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 #include "estimator/diagnose/trials/refit.h"
 #include "estimator/diagnose/trials/trial_names.h"

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/free_run_start.h"
+#include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "estimator/diagnose/trials/trial_names.h"
 
@@ -151,10 +152,7 @@ double least_cost(const TrialContext& c, const std::vector<FitResult>& runs) {
 /// building.
 void refit_from_present(const TrialContext& c, const std::vector<Fitted>& kept,
                         std::vector<FitResult>& runs) {
-  const std::vector<ModelEffect>& found = c.now.model.effects;
-  if (std::none_of(found.begin(), found.end(),
-                   [](const ModelEffect& e) { return e.element_law(); }))
-    return;
+  if (!has_element_law(c.now.model)) return;
   const double least = least_cost(c, runs);
   if (least < kNearNoise * c.fitter.expected(c.now.model)) return;
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
