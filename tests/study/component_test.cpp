@@ -1,4 +1,4 @@
-// Component tests simulated here, by equations and an integration of their own.
+// Component tests simulated here, with separate equations and integration.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 
 using Signal = std::function<double(double)>;
 
-/// Sum of tones of unit rms at multiples of step_hz, phases by chance.
+/// Returns a sum of tones of unit rms at multiples of step_hz, with random phases.
 Signal multisine(double step_hz, double low_hz, double high_hz, std::uint64_t seed) {
   Random random(seed);
   std::vector<std::array<double, 2>> tones;
@@ -83,8 +83,8 @@ struct BoucWenBenchmark {
     return {s.y + h * r.y, s.v + h * r.v, s.z + h * r.z};
   }
 
-  /// Base at rest, noisy displacement, force; by Runge and Kutta at 20 steps a sample, the first
-  /// `skipped` samples not recorded.
+  /// Returns base at rest, noisy displacement, force. Runge-Kutta with 20 steps per sample; the
+  /// first `skipped` samples are not recorded.
   static MatrixXd record(const Signal& force, Index skipped, Index samples) {
     constexpr int kSub = 20;
     constexpr double kNoise_m = 1e-6;
@@ -131,7 +131,7 @@ TEST(ComponentTest, TheBoucWenBenchmarkIsNamedAndItsUnseenSweepSimulated) {
   EXPECT_LT(d.after[1].overall, kLargestGap);
 }
 
-/// A spring that hardens and damps the more the faster it is.
+/// A spring that hardens, with damping that grows with the rate.
 struct HardeningDamper {
   static constexpr double kRate_hz = 200, kMass_kg = 2, kStiffness_npm = 5e3, kDamping_nspm = 4,
                           kCubic_npm3 = 4e7, kQuadratic_ns2pm2 = 25;
@@ -142,7 +142,7 @@ struct HardeningDamper {
            kMass_kg;
   }
 
-  /// Base at rest, noisy displacement, force; by Stoermer and Verlet at 200 steps a sample.
+  /// Returns base at rest, noisy displacement, force. Stoermer-Verlet with 200 steps per sample.
   static MatrixXd record(double force_n, std::uint64_t seed) {
     constexpr int kSub = 200;
     constexpr Index kSamples = 3000;
@@ -185,7 +185,8 @@ TEST(ComponentTest, ASpringThatHardensAndADampingThatGrowsAreBothNamed) {
   EXPECT_EQ(d.verdict, Verdict::explained);
 }
 
-/// Stiffness beside a joint that sticks elastically up to `stick` m and then slides.
+/// Returns a record of a spring with a joint that sticks elastically up to `stick` m and then
+/// slides.
 MatrixXd sliding_record(double stick_m, std::uint64_t seed) {
   constexpr double kRate_hz = 100, kStiffness_npm = 5000, kSlide_n = 400, kNoise_n = 2;
   constexpr int kSub = 50;
@@ -211,7 +212,7 @@ TEST(ComponentTest, AJointThatSticksElasticallyIsFoundUnderPrescribedMotion) {
   GTEST_SKIP() << "minutes without optimisation";
 #endif
   constexpr double kStick_m = 0.004, kTolerance = 0.1, kLargestGap = 0.05;
-  // What the component weighs does not matter, and is not known.
+  // The mass of the component does not matter, and is unknown.
   for (const double mass_kg : {0.1, 50.0}) {
     const Diagnosis d = diagnosis_of(mass_kg, 5e4, 100, true,
                                      {sliding_record(kStick_m, 1), sliding_record(kStick_m, 2)});

@@ -119,7 +119,7 @@ TEST(Diagnose, ARecordWithoutCommonTimeIsNotNamedAsPhysics) {
   constexpr int kLate = 40;  // 0.8 s
   const Small small;
   std::vector<Eigen::MatrixXd> records{small.record({}, 1), small.record({}, 2)};
-  // One recorder has two of the floor's channels, another the rest.
+  // One recorder has two of the floor's channels, another has the rest.
   const Eigen::Index rows = records[1].rows();
   for (Eigen::MatrixXd& record : records) {
     const Eigen::MatrixXd late = record.block(0, 0, rows - kLate, 2);

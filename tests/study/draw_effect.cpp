@@ -11,11 +11,11 @@ using enum estimator::EffectKind;
 estimator::EffectPlace random_place(estimator::EffectKind kind, const StudyBuilding& b,
                                     estimator::Random& random) {
   std::vector<estimator::EffectPlace> places = effect_places(kind, b.truth, b.axes);
-  if (kind == one_sided_gap || kind == two_sided_gap)  // seeds make the cases that they always made
+  if (kind == one_sided_gap || kind == two_sided_gap)  // keeps the cases of earlier seeds
     std::erase_if(places, [](const estimator::EffectPlace& p) {
       return p.kind == estimator::PlaceKind::node_pair;
     });
-  if (kind == swapped)  // base channels are no mistake one would make with those above
+  if (kind == swapped)  // base channels are rarely confused with those above
     std::erase_if(places, [&](const estimator::EffectPlace& p) {
       return (b.axes[static_cast<std::size_t>(p.channel)].story == 0) !=
              (b.axes[static_cast<std::size_t>(p.with_channel)].story == 0);
@@ -28,12 +28,12 @@ int element_of(const estimator::EffectPlace& p, const estimator::ParameterTable&
                                                : table.frame_stiffness(p.story, p.frame);
 }
 
-/// What the sizes of an element's effect are measured in.
+/// Scales of an element's effect.
 struct ElementScale {
   double k, d, v;
 };
 
-/// Of all frames that amplitude_dependence acts on: the largest deformation.
+/// Returns the largest deformation of all frames that amplitude_dependence acts on.
 ElementScale frames_scale(const StudyBuilding& b, const Peaks& peaks,
                           const estimator::EffectPlace& p) {
   ElementScale out{1, 0, 0};
@@ -89,7 +89,7 @@ double largest_size(estimator::EffectKind kind, bool softening) {
   }
 }
 
-/// Values at an element, in the order of the catalogue, for size s; u are uniform draws.
+/// Returns the values at an element, in the order of the catalog, for size s. u: uniform draws.
 std::vector<double> element_values(estimator::EffectKind kind, const ElementScale& e, double s,
                                    double sign, const double* u, double seconds) {
   switch (kind) {
@@ -158,7 +158,7 @@ std::vector<double> node_values(estimator::EffectKind kind, const StudyBuilding&
   }
 }
 
-/// Rotational stiffness that makes `s` of the frames' flexibility.
+/// Returns the rotational stiffness that contributes `s` of the frames' flexibility.
 double rotational_stiffness(const StudyBuilding& b, const estimator::EffectPlace& p, double s,
                             bool base) {
   double sum = 0;
@@ -214,7 +214,7 @@ Draw draw_effect(estimator::EffectKind kind, const StudyBuilding& b, const Peaks
       const ElementScale scale{b.theta[i], peaks.deformation[i], peaks.rate[i]};
       set(element_values(kind, scale, s, sign, u.data(), peaks.seconds));
       const bool hysteretic = kind == bilinear_hysteresis || kind == bouc_wen || kind == pinching;
-      if (hysteretic) hidden.theta[i] -= e.values[0];  // its share of the frame, not more
+      if (hysteretic) hidden.theta[i] -= e.values[0];  // its share of the frame's stiffness
     } else if (place.kind == building) {
       set({rotational_stiffness(b, place, s, kind == base_rocking)});
     } else if (place.kind == floor) {

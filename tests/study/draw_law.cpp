@@ -27,8 +27,8 @@ class PlainLaw : public estimator::ElementLaw {
   double stiffness_;
 };
 
-/// Sliders in parallel, each giving way at its own, perhaps lopsided, deformation.
-/// With `loss` the limits fall by the factor exp(-loss work).
+/// Sliders in parallel that yield at different, possibly asymmetric, deformations. With `loss` the
+/// limits fall by the factor exp(-loss work).
 class Sliders : public estimator::ElementLaw {
  public:
   struct Part {
@@ -64,7 +64,7 @@ class Sliders : public estimator::ElementLaw {
   double loss_, work_ = 0;
 };
 
-/// A brace that yields to either side, hardens, and is slack by what it has yielded.
+/// A brace that yields in both directions, hardens, and stays slack by its plastic deformation.
 class SlackBrace : public estimator::ElementLaw {
  public:
   SlackBrace(double stiffness, double yield) : k_(stiffness), yield_(yield) {}
@@ -96,7 +96,7 @@ std::unique_ptr<estimator::ElementLaw> plain(PlainLaw::Function f, double stiffn
   return std::make_unique<PlainLaw>(std::move(f), stiffness);
 }
 
-/// Laws with sliders; null when the name is that of another one.
+/// Returns laws with sliders, or null if the name belongs to another law.
 std::unique_ptr<estimator::ElementLaw> make_sliding(const std::string& name, const LawScale& e,
                                                     double s, double u) {
   if (name == "stick and slip")
@@ -157,7 +157,7 @@ std::unique_ptr<estimator::ElementLaw> make_other(const std::string& name, const
                      double) { return -s * e.k * d * 0.5 * (1 + std::tanh((t - at) / 1.5)); },
                  s * e.k);
   }
-  if (name == "tanh softening")  // beside a spring that the building has lost
+  if (name == "tanh softening")  // with a spring that the building has lost
     return plain(
         [=](double, double d, double) { return s * e.k * 0.4 * e.d * std::tanh(d / (0.4 * e.d)); },
         s * e.k);

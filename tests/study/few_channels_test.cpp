@@ -4,7 +4,7 @@
 #include "estimator/diagnose/fit/diagnosis_input.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 
-// Twenty stories, channels at the base and on four floors: other floors follow from theirs.
+// Twenty stories with channels at the base and on four floors; other floors follow from theirs.
 namespace framewatch::estimator {
 namespace few_channels_test {
 
@@ -20,7 +20,7 @@ daemon::TallTrial trial_of(std::uint64_t seed) {
   return trial;
 }
 
-/// Two records of one building, both strong all the time.
+/// Returns two records of one building, both strong all the time.
 DiagnosisInput input_of(daemon::TallTrial trial, double factor_of_floor_10 = 1) {
   daemon::TallRecord record = tall_record(trial);
   record.accel.col(kFloor10) *= factor_of_floor_10;

@@ -8,7 +8,7 @@
 namespace framewatch::study {
 
 /// Noise of unit power whose density falls as 1/f over three decades, from a quarter of the rate
-/// down: a sum of noises that forget in steps of four.
+/// down: a sum of low-pass noises whose corners differ by factors of four.
 class FlickerNoise {
  public:
   explicit FlickerNoise(estimator::Random& random) : random_(random) {

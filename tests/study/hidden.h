@@ -21,24 +21,24 @@ struct Peaks {
   double seconds = 0;  ///< of the record
 };
 
-/// A law that the catalogue does not have, on a frame story.
+/// A law on a frame story that the catalog does not have.
 struct OtherLaw {
   std::string name;
-  std::vector<std::string> accepted;  ///< names of the catalogue that describe it about
+  std::vector<std::string> accepted;  ///< names of the catalog that describe it approximately
   estimator::LawKind sort;            ///< of its force
   estimator::EffectPlace place;
   std::function<std::unique_ptr<estimator::ElementLaw>(int record)> make;
 };
 
-/// What a case hides, of a certain size.
+/// The hidden part of a case, of a certain size.
 struct Hidden {
   std::vector<estimator::Effect> effects;  ///< of record 0
   std::vector<OtherLaw> laws;
-  Eigen::VectorXd theta;  ///< the building's, less what the effects have taken over
+  Eigen::VectorXd theta;  ///< the building's, less the share taken over by the effects
 };
 
-/// A hidden effect with everything drawn but its size: `make` gives it for a size in (0, largest],
-/// added to what `hidden` has.
+/// A hidden effect with everything drawn except its size. `make` returns it for a size in (0,
+/// largest], added to the contents of `hidden`.
 struct Draw {
   std::string name;
   double largest = 1;
@@ -47,17 +47,17 @@ struct Draw {
   std::function<void(double size, Hidden& hidden)> make;
 };
 
-/// An effect of the catalogue at a random place.
+/// Draws an effect of the catalog at a random place.
 Draw draw_effect(estimator::EffectKind kind, const StudyBuilding& building, const Peaks& peaks,
                  estimator::Random& random);
 
-/// Names of laws that are like one of the catalogue's, and of those that are like none.
+/// Returns the names of laws that resemble one of the catalog's, and of those that resemble none.
 const std::vector<std::string>& other_forms();
 const std::vector<std::string>& outsiders();
 Draw draw_law(const std::string& name, const StudyBuilding& building, const Peaks& peaks,
               estimator::Random& random);
 
-/// The effects as they act in another record: what begins at a time, or has a phase, differs.
+/// Returns the effects as they act in another record: start times and phases differ.
 std::vector<estimator::Effect> in_record(std::vector<estimator::Effect> effects, int record,
                                          double seconds);
 

@@ -8,7 +8,7 @@
 namespace framewatch::estimator {
 namespace large_building_test {
 
-/// Eleven stories whose masses are not quite those of the design.
+/// Eleven stories whose masses differ slightly from those of the design.
 TEST(LargeBuilding, MassesWithinTheirToleranceAreNoEffect) {
   constexpr double kTolerance = 0.01;
   const test::Small described = test::tower(11);

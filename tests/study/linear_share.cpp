@@ -17,15 +17,15 @@ constexpr double kChange = 0.01;  ///< of a parameter, for its derivative
 constexpr double kMassError = 0.01;
 constexpr double kRidge = 1e-9;
 constexpr int kSteps = 6;          ///< of Gauss-Newton
-constexpr double kDamping = 1e-3;  ///< of it
+constexpr double kDamping = 1e-3;  ///< of the stiffness
 constexpr int kStepsToTheEnd = 8, kTries = 5;
-constexpr double kEnded = 0.98;  ///< a step that leaves more of the cost is the last
+constexpr double kEnded = 0.98;  ///< share of the cost above which a step is the last
 
 Eigen::VectorXd stacked(const Eigen::MatrixXd& m) {
   return Eigen::Map<const Eigen::VectorXd>(m.data(), m.size());
 }
 
-/// Largest deformations of the linear building.
+/// Returns the largest deformations of the linear building.
 Peaks find_peaks(const StudyCase& c) {
   const StudyBuilding& b = c.building;
   const estimator::ParameterTable table = b.table();
@@ -96,7 +96,7 @@ Eigen::VectorXd LinearShare::response(const StudyCase& c) const {
   return stacked(clean_record(c, 0).rightCols(linear_.cols() - base_axes_));
 }
 
-/// By relative changes.
+/// With respect to relative changes.
 Eigen::MatrixXd LinearShare::derivatives_at(const StudyCase& c,
                                             const Eigen::VectorXd& response) const {
   Eigen::MatrixXd out(response.size(), unknowns());
@@ -160,7 +160,7 @@ double LinearShare::unexplained(const Eigen::MatrixXd& accel, bool worst_channel
 double LinearShare::unexplained_at_the_end(const Eigen::MatrixXd& accel, bool worst_channel) const {
   const Eigen::VectorXd measured = stacked(accel.rightCols(linear_.cols() - base_axes_));
   Eigen::VectorXd changes = Eigen::VectorXd::Zero(unknowns());  // relative
-  // A mass weighs what hold_masses says, in relative changes.
+  // Masses are weighted by hold_masses(), in relative changes.
   const Eigen::VectorXd held = held_.cwiseProduct(norms_.cwiseAbs2());
   const auto building_of = [&](const Eigen::VectorXd& by) {
     StudyCase out = case_;
@@ -174,7 +174,7 @@ double LinearShare::unexplained_at_the_end(const Eigen::MatrixXd& accel, bool wo
   double cost = cost_of(rest, changes), damping = kDamping;
   for (int i = 0; i < kStepsToTheEnd; ++i) {
     const StudyCase at = building_of(changes);
-    // Of factors on what the building is there, to those on what it was.
+    // Converts factors on the present building to factors on the original one.
     Eigen::MatrixXd d = derivatives_at(at, measured - rest);
     for (Eigen::Index u = 0; u < unknowns(); ++u) d.col(u) /= std::clamp(1 + changes[u], 0.1, 10.0);
     Eigen::MatrixXd normal = d.transpose() * d;

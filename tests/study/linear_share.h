@@ -6,22 +6,22 @@
 
 namespace framewatch::study {
 
-/// What the stiffness and damping of a linear building can explain of a train record, and masses as
-/// far as their tolerance and the noise let them: Gauss-Newton with the response's derivatives by
-/// every parameter and mass of the true building. This sizes effects; nothing of it is diagnose's.
+/// The part of a train record that stiffness and damping of a linear building can explain, with
+/// masses within their tolerance. Gauss-Newton with the response's derivatives by every parameter
+/// and mass of the true building. Sizes effects; shares no code with diagnose.
 class LinearShare {
  public:
   explicit LinearShare(const StudyCase& c);
 
   const Peaks& peaks() const { return peaks_; }
-  /// NRMSE that sensors' noise of a ratio to each channel's rms makes, that of the base passed on
-  /// by the building.
+  /// Returns the NRMSE of sensor noise with this ratio to each channel's rms, including the base's
+  /// noise passed on by the building.
   double noise_floor(double ratio) const;
-  /// What they cannot, as a share of the record: of all channels above the base, or of the worst.
-  /// Below `enough` the first step's. Quick, and too large where the fit goes far: derivatives stay
-  /// those of the true building.
+  /// Returns the unexplained share of the record: of all channels above the base, or of the worst
+  /// one. Stops after the first step if that is below `enough`. Fast, and too large for large
+  /// steps, because derivatives stay those of the true building.
   double unexplained(const Eigen::MatrixXd& accel, bool worst_channel, double enough) const;
-  /// The same with derivatives anew in every step, to where the fit ends.
+  /// Returns the unexplained share with new derivatives in every step, at convergence.
   double unexplained_at_the_end(const Eigen::MatrixXd& accel, bool worst_channel) const;
 
  private:
@@ -31,12 +31,13 @@ class LinearShare {
            static_cast<Eigen::Index>(case_.building.truth.node_mass.size());
   }
   double& value(StudyCase& c, Eigen::Index unknown) const;
-  /// Response above the base of a linear building, stacked by axes, and its derivatives.
+  /// Returns the response above the base of a linear building, stacked by axes, and its
+  /// derivatives.
   Eigen::VectorXd response(const StudyCase& c) const;
   Eigen::MatrixXd derivatives_at(const StudyCase& c, const Eigen::VectorXd& response) const;
-  /// Weight of a mass's distance from what is declared.
+  /// Sets the weights of the masses' distance from the declared ones.
   void hold_masses();
-  /// A wrong base channel is a wrong input: counted as what it would be on the channels above.
+  /// A wrong base channel is a wrong input, so it counts by its effect on the channels above.
   double share_of(const Eigen::VectorXd& rest, const Eigen::MatrixXd& accel,
                   bool worst_channel) const;
 

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The other program's words, in order: the first that occurs decides. None: the catalogue has no
+/// The other program's words, in order: the first that occurs decides. Empty: the catalog has no
 /// such effect.
 struct Word {
   const char* word;
@@ -73,7 +73,8 @@ Json accepted(const std::string& effect) {
   return Json::array();
 }
 
-/// floor and line of "u_2_1": floor 2, x-parallel frame y1; "v_12_3": floor 12, frame x3.
+/// Returns floor and line of "u_2_1" (floor 2, x-parallel frame y1) or "v_12_3" (floor 12, frame
+/// x3).
 Json node_of(const std::string& channel) {
   const bool along_x = channel.front() == 'u';
   return {{"kind", "node"},
@@ -145,7 +146,8 @@ Json read_json(const std::string& path) {
   return Json::parse(text, nullptr, false);
 }
 
-/// What there is to find: of two effects each, without what is a lower stiffness in every record.
+/// Returns the effects to find: of two effects each, without those that equal a lower stiffness in
+/// every record.
 Json effects_of(const Json& hidden) {
   Json out = Json::array();
   const std::string name = hidden["effect"];

@@ -1,4 +1,4 @@
-// diagnose_study: seeded cases for `framewatch diagnose`, and what it makes of them.
+// diagnose_study: seeded cases for `framewatch diagnose`, and its results for them.
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ struct Wanted {
   std::string group, name;
 };
 
-/// Not what is the same as a lower stiffness, and not what belongs to the linear model.
+/// False for effects that equal a lower stiffness, and for those that belong to the linear model.
 bool can_be_found(estimator::EffectKind kind) {
   return kind != estimator::EffectKind::p_delta && kind != estimator::EffectKind::modal_damping;
 }
@@ -86,7 +86,8 @@ std::vector<Wanted> wanted_cases(long each) {
   return out;
 }
 
-/// With less noise, and at last in another building, when the effect does not show above it.
+/// Makes a case. Tries less noise, and finally another building, if the effect does not exceed the
+/// noise.
 std::optional<StudyCase> make_showing(const Wanted& wanted, CaseOptions options, std::size_t noise,
                                       std::string& why) {
   constexpr double kNoise[] = {0.01, 0.02, 0.05};
@@ -172,7 +173,7 @@ std::string log_of(const std::string& directory, const std::string& folder) {
   return directory + (folder == "out" ? "/log.txt" : "/log-" + folder + ".txt");
 }
 
-/// One case, unless there is its diagnosis. Until it is done its log has another name.
+/// Diagnoses one case unless its diagnosis exists. The log has another name until the case is done.
 void diagnose_case(const std::string& program, const std::string& directory,
                    const std::string& folder, const std::string& more) {
   if (std::filesystem::exists(directory + "/" + folder + "/diagnosis.json")) return;

@@ -15,7 +15,7 @@ class Bounds {
  public:
   explicit Bounds(const std::vector<Outcome>& outcomes) : outcomes_(outcomes) {}
 
-  /// Share of a group for which something holds, at least or at most.
+  /// Adds a bound on the share of a group for which something holds, at least or at most.
   void share(const std::string& what, const Holds& of, const Holds& holds, double limit,
              bool at_least = true) {
     int all = 0, good = 0;

@@ -19,7 +19,7 @@ double uniform(estimator::Random& random, double low, double high) {
   return low + (high - low) * random.uniform();
 }
 
-/// Never further than three standard deviations.
+/// Returns a normal deviation within three standard deviations.
 double off(estimator::Random& random, double deviation) {
   return deviation * std::clamp(random.normal(), -3.0, 3.0);
 }
@@ -87,7 +87,7 @@ std::string list(const double* values, int count) {
   return out + "]";
 }
 
-/// rows x columns of `values`, as nested lists.
+/// Returns rows x columns of `values` as nested lists.
 std::string grid(const std::vector<double>& values, int rows, int columns) {
   std::string out = "[";
   for (int r = 0; r < rows; ++r)

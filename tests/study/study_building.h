@@ -10,7 +10,7 @@
 
 namespace framewatch::study {
 
-/// What a building really is and what its engineer believes.
+/// A building as it is, and as its engineer believes it to be.
 struct StudyBuilding {
   std::string kind;
   estimator::Structure truth;     ///< with the true masses
@@ -25,14 +25,14 @@ struct StudyBuilding {
   estimator::ParameterTable table() const { return estimator::ParameterTable(truth); }
 };
 
-/// The kinds of building: 2story_1x1, 2story_3x3, 5story_1x1 (stories, bays).
+/// Returns the kinds of building: 2story_1x1, 2story_3x3, 5story_1x1 (stories, bays).
 const std::vector<std::string>& building_kinds();
 
-/// A random one. Standard deviations of what is wrong are scaled by `tolerance`.
+/// Returns a random building. The standard deviations of its errors are scaled by `tolerance`.
 StudyBuilding random_building(const std::string& kind, estimator::FloorModel floor,
                               estimator::Random& random, double tolerance = 1);
 
-/// The engineer's belief as a configuration file.
+/// Returns the engineer's belief as a configuration file.
 std::string config_toml(const StudyBuilding& building, double rate_hz);
 
 }  // namespace framewatch::study

@@ -14,10 +14,10 @@ namespace framewatch::study {
 namespace {
 
 constexpr double kQuiet_s = 4;
-constexpr double kLargestGap = 0.45;  ///< NRMSE; beyond it is another building
+constexpr double kLargestGap = 0.45;  ///< NRMSE; larger gaps mean another building
 constexpr int kSizes = 10;            ///< steps of the search
 constexpr int kDraws = 6;             ///< places tried
-constexpr int kGrowths = 7;           ///< of a size that showed too little
+constexpr int kGrowths = 7;           ///< of a size that was too small to show
 
 double uniform(estimator::Random& random, double low, double high) {
   return low + (high - low) * random.uniform();
@@ -48,7 +48,8 @@ Draw draw_hidden(const std::string& name, const StudyBuilding& b, const Peaks& p
   return draw_law(name, b, peaks, random);
 }
 
-/// Train record of the case with an effect of a size; empty when the building does not stand it.
+/// Returns the train record of the case with an effect of this size; empty if the building becomes
+/// unstable.
 std::optional<Eigen::MatrixXd> record_with(const Draw& draw, double size, StudyCase c) {
   c.hidden = {{}, {}, c.building.theta};
   draw.make(size, c.hidden);
@@ -58,7 +59,7 @@ std::optional<Eigen::MatrixXd> record_with(const Draw& draw, double size, StudyC
   return accel;
 }
 
-/// Smallest size, of a geometric ladder, whose gap reaches `wanted`; 0 when none does.
+/// Returns the smallest size, on a geometric ladder, whose gap reaches `wanted`; 0 if none does.
 double size_for(const Draw& draw, double wanted, const StudyCase& c, const LinearShare& share,
                 double& gap) {
   const auto gap_of = [&](double size) {
@@ -83,8 +84,8 @@ double size_for(const Draw& draw, double wanted, const StudyCase& c, const Linea
   return high;
 }
 
-/// The size grown until its gap is what it is asked to be when the linear building is fitted to the
-/// end; 0 when it never is.
+/// Returns the size, grown until its gap reaches the wanted one with the linear building fitted to
+/// convergence; 0 if it never does.
 double settled(const Draw& draw, double size, double least, const StudyCase& c,
                const LinearShare& share, double& gap) {
   for (int i = 0; i < kGrowths; ++i) {
@@ -107,7 +108,7 @@ std::vector<std::string> parts_of(const std::string& name) {
   return out;
 }
 
-/// Dashpots from every floor to the ground, as the masses.
+/// Returns dashpots from every floor to the ground, proportional to the masses.
 std::vector<estimator::Effect> ground_dampers(const estimator::Structure& s, double per_kg) {
   std::vector<estimator::Effect> out;
   for (int story = 1; per_kg > 0 && story <= s.stories; ++story)
@@ -123,7 +124,7 @@ std::vector<estimator::Effect> ground_dampers(const estimator::Structure& s, dou
   return out;
 }
 
-/// Whether softening lets the building stand through the record that sizes are not chosen by.
+/// Returns true if a softening building stays stable in the record that does not determine sizes.
 bool stands_through_holdout(StudyCase c, const Hidden& hidden) {
   c.hidden = hidden;
   return clean_record(c, 1).allFinite();

@@ -14,8 +14,8 @@ struct CaseOptions {
   std::string building = "2story_1x1";
   double noise_ratio = 0.02;   ///< of every channel's rms
   double flicker_share = 0.3;  ///< of the noise's power: FlickerNoise
-  /// Damping ratio of the first mode that goes with the masses, over 1 %: no dashpot between floors
-  /// makes it.
+  /// Damping ratio of the first mode from mass-proportional damping, over 1 %. Dashpots between
+  /// floors cannot produce it.
   double mass_damping = 0.2;
   double seconds = 60;  ///< of each record
   double rate_hz = 100;
@@ -23,28 +23,28 @@ struct CaseOptions {
   std::uint64_t seed = 1;
 };
 
-/// A building, what it hides and how it is shaken, twice.
+/// A building, its hidden effects and its two ground motions.
 struct StudyCase {
   CaseOptions options;
   std::string group;  ///< catalogue, nothing, other_form, outside, two_effects, three_effects
-  std::string name;   ///< of what is hidden
+  std::string name;   ///< of the hidden part
   StudyBuilding building;
   Hidden hidden;
   std::vector<estimator::PlanMotion> motions;     ///< train, holdout
-  std::vector<estimator::Effect> ground_dampers;  ///< the damping that goes with the masses
-  bool filtered = false;      ///< clean_record(): a late reading is one of a filtered record
-  double gap_over_floor = 0;  ///< what no linear model explains, of the train record
+  std::vector<estimator::Effect> ground_dampers;  ///< the mass-proportional damping
+  bool filtered = false;      ///< clean_record(): a late reading is taken from a filtered record
+  double gap_over_floor = 0;  ///< gap that no linear model explains, of the train record
 };
 
-/// Empty when no size at all makes it show; the reason is then in `why_not`.
+/// Returns nullopt and sets `why_not` if no size makes the effect show.
 std::optional<StudyCase> make_case(const std::string& group, const std::string& name,
                                    const CaseOptions& options, std::string& why_not);
 
-/// Sampled channels of a record with noise, instants x axes, m/s^2.
+/// Returns the sampled channels of a record with noise, instants x axes, m/s^2.
 Eigen::MatrixXd measured(const StudyCase& c, int record);
 
-/// config.toml, train.csv.gz, holdout.csv.gz and truth.json in `directory`. False, and the reason,
-/// when they cannot be written.
+/// Writes config.toml, train.csv.gz, holdout.csv.gz and truth.json to `directory`. Returns false
+/// and sets `error` if they cannot be written.
 bool write_case(const StudyCase& c, const std::string& directory, std::string& error);
 
 }  // namespace framewatch::study

@@ -19,7 +19,7 @@
 namespace framewatch::study {
 namespace {
 
-/// Steps of the integration's input: fine for what is written, the sampling's own for sizing.
+/// Steps of the integration's input: fine for written records, the sampling's for sizing.
 constexpr double kFine_s = 1e-3;
 constexpr double kBias_mps2 = 0.02;
 constexpr double kFullScale_mps2 = 4 * 9.80665;
@@ -67,7 +67,7 @@ Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<estimator:
   return out;
 }
 
-/// The small errors that every instrument has.
+/// Returns the small errors that every instrument has.
 std::vector<estimator::Effect> instrument_errors(const StudyBuilding& b) {
   std::vector<estimator::Effect> out;
   for (std::size_t i = 0; i < b.axes.size(); ++i) {

@@ -6,8 +6,8 @@
 
 namespace framewatch::study {
 
-/// Channels of a record without noise and without the small errors of every instrument, at the
-/// sampling rate, filtered where StudyCase::filtered says so: instants x axes, m/s^2.
+/// Returns the channels of a record without noise and instrument errors, at the sampling rate,
+/// filtered if StudyCase::filtered: instants x axes, m/s^2.
 Eigen::MatrixXd clean_record(const StudyCase& c, int record);
 
 }  // namespace framewatch::study

@@ -26,13 +26,13 @@ std::string text_of(const Json& json, const char* key) {
   return json.is_object() && json.contains(key) && json[key].is_string() ? json[key] : "";
 }
 
-/// Laws that one curve describes as well as the other.
+/// Returns the family of a law: laws that one curve describes equally well.
 std::string family(const std::string& name) {
   if (name == "bouc_wen") return "bilinear_hysteresis";
   return name;
 }
 
-/// Whether the diagnosis' place is the truth's, in what both say of it.
+/// Returns true if the diagnosed place is the true one, in the fields that both have.
 bool same_place(const Json& truth, const Json& found) {
   const std::string kind = text_of(truth, "kind");
   const bool channel = kind == "channel" || kind == "base";
@@ -79,7 +79,7 @@ std::optional<double> first_of(std::initializer_list<std::optional<double>> cand
   return std::nullopt;
 }
 
-/// Names that the diagnosis could not tell from the one it gives.
+/// Returns true if the true name is among those that the diagnosis could not distinguish.
 bool among_indistinguishable(const Json& truth, const Json& effect) {
   if (!effect.contains("indistinguishable_from")) return false;
   for (const Json& other : effect["indistinguishable_from"]) {
@@ -104,7 +104,7 @@ void compare_parameters(const Json& truth, const Json& found, std::vector<double
   }
 }
 
-/// Whether a law is of the kind that the truth says, or that of the law hidden.
+/// Returns true if a law is of the true kind, or of the kind of the hidden law.
 bool same_kind(const Json& truth, const std::string& name) {
   using estimator::LawKind;
   const auto law = estimator::find_effect(name);
@@ -159,7 +159,7 @@ void compare(const Json& truths, const Json& found, Outcome& out) {
   }
 }
 
-/// Where nothing was named, the likeliest place is the one that is claimed.
+/// If nothing was named, the likeliest place counts as the claimed one.
 void place_unnamed(const Json& truths, const Json& where, Outcome& out) {
   if (where.empty()) return;
   for (const Json& truth : truths)

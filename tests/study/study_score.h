@@ -6,52 +6,52 @@
 
 namespace framewatch::study {
 
-/// What a diagnosis made of one case.
+/// Result of a diagnosis of one case.
 struct Outcome {
   std::string directory, group, building, hidden;
   double noise_ratio = 0;
   std::string verdict;             ///< refused: no diagnosis.json
   std::vector<std::string> named;  ///< effects adopted
   int truths = 0;                  ///< effects hidden
-  int places_right = 0;    ///< of those, at whose place something was adopted; of none, that which
-                           ///< is the likeliest
-  int right = 0;           ///< of those, with their name or that of their family too
-  int exact = 0;           ///< with their very name
-  bool told_apart = true;  ///< false: right only among those that cannot be told apart
-  bool extra = false;      ///< something was adopted that is not there
-  bool confidently_wrong = false;  ///< and the diagnosis is sure of its name
-  bool of_the_kind = true;  ///< all that was adopted is at the place of a hidden effect and a law
-                            ///< of its kind
-  bool in_doubt = true;     ///< and has a confidence of at most a half
+  int places_right =
+      0;  ///< of those, with an adopted effect at their place; if none, with the likeliest place
+  int right = 0;                   ///< of those, with their name or that of their family
+  int exact = 0;                   ///< with exactly their name
+  bool told_apart = true;          ///< false: right only among indistinguishable names
+  bool extra = false;              ///< an effect was adopted that is not there
+  bool confidently_wrong = false;  ///< with high confidence in its name
+  bool of_the_kind =
+      true;  ///< every adopted effect is at the place of a hidden effect and a law of its kind
+  bool in_doubt = true;  ///< with a confidence of at most a half
   std::optional<double> gap_before, gap_after, noise_floor;  ///< held out, overall
-  std::vector<double> parameter_errors;  ///< relative, of what was named exactly
+  std::vector<double> parameter_errors;                      ///< relative, of exactly named effects
 
   bool abstained() const { return named.empty(); }
-  /// Nothing named, or nothing but what is near, and said to be in doubt.
+  /// Returns true if nothing was named, or only a nearest law with low confidence.
   bool no_wrong_name() const { return abstained() || (of_the_kind && in_doubt); }
   bool kind_and_place() const { return !abstained() && of_the_kind; }
   bool all_right() const { return right == truths && !extra; }
-  /// Share of what exceeds the noise floor that is gone.
+  /// Returns the removed share of the excess over the noise floor.
   std::optional<double> removed() const;
 };
 
-/// Group of a case of the catalogue that was diagnosed without its effect in the catalogue.
+/// Group of a case of the catalog that was diagnosed without its effect in the catalog.
 inline constexpr const char* kTakenOut = "taken_out";
 
-/// From DIRECTORY/truth.json and DIRECTORY/out/diagnosis.json, or that of another folder, which is
-/// the name of its group then; empty when there is no truth.
+/// Reads DIRECTORY/truth.json and DIRECTORY/out/diagnosis.json. For another `folder`, its name is
+/// the group. Returns nullopt if there is no truth.
 std::optional<Outcome> score(const std::string& directory, const std::string& folder = "out");
 
-/// A rate that is asked for.
+/// A required rate.
 struct Bound {
   std::string what, asked, measured;
   bool holds = false;
 };
 
-/// Of what there are cases of.
+/// Returns the bounds for which there are cases.
 std::vector<Bound> bounds_of(const std::vector<Outcome>& outcomes);
 
-/// Rates, confusion matrix, shrinking of the gap and what is asked, as Markdown.
+/// Returns rates, confusion matrix, reduction of the gap and required rates as Markdown.
 std::string tables(const std::vector<Outcome>& outcomes);
 
 }  // namespace framewatch::study

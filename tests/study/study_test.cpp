@@ -110,7 +110,8 @@ TEST(StudyCase, MayHideThreeEffects) {
 }
 
 TEST(StudyCase, WhatIsHiddenShows) {
-  constexpr double kShows = 2;  // times the noise of all channels; one sensor's fault is in one
+  constexpr double kShows =
+      2;  // times the noise of all channels; a sensor's fault is in one channel
   for (const char* name :
        {"bouc_wen", "gain_error", "time_shift", "smooth gap", "cubic_stiffness+gain_error",
         "slack brace", "yielding that tires", "whole frame softens"}) {
@@ -141,7 +142,8 @@ TEST(Practice, IsImportedInTheCataloguesWords) {
   EXPECT_FALSE(import_practice(folder.path("nowhere"), directory, error));
 }
 
-/// A floor of two digits, and of two effects the one that is not a lower stiffness in every record.
+/// A floor with two digits. Of two effects, the one that does not equal a lower stiffness in every
+/// record.
 TEST(Practice, TellsWhatThereIsToFind) {
   FRAMEWATCH_DATA_OR_SKIP(data, "practice/case-009/truth.json");
   const std::filesystem::path cases = std::filesystem::path(data).parent_path().parent_path();

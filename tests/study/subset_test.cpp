@@ -51,7 +51,7 @@ void PrintTo(const HiddenEffect& effect, std::ostream* out) {
 }
 class StudyEffects : public testing::TestWithParam<HiddenEffect> {};
 
-/// Several minutes a case where nothing is optimised.
+/// Takes several minutes per case without optimization.
 #ifdef __OPTIMIZE__
 #define FRAMEWATCH_OPTIMISED_OR_SKIP() static_cast<void>(0)
 #else
@@ -69,7 +69,8 @@ INSTANTIATE_TEST_SUITE_P(Subset, StudyEffects,
                          testing::Values(HiddenEffect{"cubic_stiffness", 4000},
                                          HiddenEffect{"tuned_mass_damper", 4002},
                                          HiddenEffect{"time_shift", 4003},
-                                         // so stiff that its run finds no way from a soft start
+                                         // so stiff that its run does not converge from a soft
+                                         // start
                                          HiddenEffect{"one_sided_gap", 3300008, 0.05},
                                          HiddenEffect{"floor_flexibility", 4005}),
                          [](const auto& effect) { return std::string(effect.param.name); });

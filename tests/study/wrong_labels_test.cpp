@@ -6,7 +6,7 @@
 #include "estimator/diagnose/verdict/diagnose.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
-// Channels whose label or sign is wrong, as they come from the wiring of real buildings.
+// Channels with a wrong label or sign, as caused by the wiring of real buildings.
 namespace framewatch::estimator {
 namespace wrong_labels_test {
 

@@ -11,7 +11,7 @@
 #include "daemon/config/keys/can_options.h"
 #include "daemon/config/sections/can_signals.h"
 #include "daemon/config/sections/sections.h"
-#include "estimator/motion/sample_bound.h"
+#include "estimator/motion/acquisition.h"
 
 namespace framewatch::daemon {
 namespace {

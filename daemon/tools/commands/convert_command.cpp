@@ -16,7 +16,6 @@
 #include "daemon/config/config.h"
 #include "daemon/config/header_differences.h"
 #include "daemon/monitor/estimates/estimate_output.h"
-#include "daemon/tools/commands/lost_headers.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_log.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "estimator/diagnose/model/component_test.h"
+#include "estimator/diagnose/model/plant.h"
 
 namespace framewatch::daemon {
 

@@ -5,7 +5,6 @@
 #include "daemon/base/json.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "daemon/tools/simulation/simulation_truth.h"
-#include "daemon/tools/diagnosis/noise_beyond.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"

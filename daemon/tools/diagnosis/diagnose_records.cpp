@@ -16,7 +16,7 @@
 #include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
-#include "estimator/diagnose/spectra/upsampled.h"
+#include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/motion/acquisition.h"
 
 namespace framewatch::daemon {

@@ -151,7 +151,7 @@ std::string number(double value, int digits = 4) {
   return std::isfinite(value) ? fmt::format("{:#.{}g}", value, digits) : "-";
 }
 
-std::string percent(double ratio, const char* format = "{:.1f}") {
+std::string ratio_percent(double ratio, const char* format = "{:.1f}") {
   return std::isfinite(ratio) ? fmt::format(fmt::runtime(format), 100 * ratio) : "-";
 }
 
@@ -275,8 +275,8 @@ std::string parameter_section(const SessionReport& r) {
       row.push_back(model_error(fit, p, factor * one.mean));
       for (const double value : {one.boxplot.q1, one.boxplot.median, one.boxplot.q3})
         row.push_back(number(factor * value));
-      row.push_back(percent(one.observable_ratio));
-      row.push_back(percent(one.boxplot.median / r.reference_static[p] - 1, "{:+.1f}"));
+      row.push_back(ratio_percent(one.observable_ratio));
+      row.push_back(ratio_percent(one.boxplot.median / r.reference_static[p] - 1, "{:+.1f}"));
       row.push_back(without(r, p, stage.whole));
       rows.push_back(std::move(row));
     }

@@ -7,7 +7,7 @@
 
 #include "daemon/config/channel_addresses.h"
 #include "estimator/structure/parameter_table.h"
-#include "estimator/structure/place_names.h"
+#include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
 namespace {

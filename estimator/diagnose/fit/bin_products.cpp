@@ -111,7 +111,7 @@ void BinProducts::compute(Index bin) {
   const Index n = metric_.rows(), own = size_real_.size(), first = all_.real.rows() - n;
   const double *sr = size_real_.data(), *si = size_imaginary_.data();
   for (Index i = 0; i < n; ++i) {
-    // The metric is Hermitian: its columns lie together in memory.
+    // The metric is Hermitian, and its columns are contiguous in memory.
     under_.real.row(0) = metric_.col(i).real();
     under_.imaginary.row(0) = -metric_.col(i).imag();
     put_products();

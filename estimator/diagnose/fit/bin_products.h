@@ -5,52 +5,54 @@
 
 #include <Eigen/Core>
 
-#include "estimator/diagnose/fit/linearised.h"
+#include "estimator/diagnose/fit/fit_columns.h"
 
 namespace framewatch::estimator {
 
-/// Inner products of the whitened columns of one bin, made from those of the few directions that
-/// the columns have (Columns). Of a tall building that is a tenth of the work of the columns
-/// themselves, and none of their memory.
+/// Inner products of the whitened columns of one bin. Computes them from the products of the few
+/// directions that the columns have (Columns). For a tall building this takes a tenth of the work
+/// and no memory for the columns.
 class BinProducts {
  public:
-  /// Of the unknowns `kept`, then the residual; of a large building without its end terms.
+  /// Columns: the unknowns `kept`, then the residual. For a large building the end terms are
+  /// projected out of the residual.
   BinProducts(const Linearised& at, std::size_t record, const std::vector<Eigen::Index>& kept);
 
   void compute(Eigen::Index bin);
-  /// Of what compute() does only that which of_axis(), under_metric() and between() need.
+  /// Does only the part of compute() that of_axis(), under_metric() and between() need.
   void put_metric(Eigen::Index bin);
   const Eigen::MatrixXcd& metric() const { return metric_; }
-  /// Adds the products of the columns with each other, `weight` times, to the upper triangle of
-  /// `sum`; its rows are padded, and what is left of the diagonal is anything.
+  /// Adds the products of the columns, times `weight`, to the upper triangle of `sum`. The rows of
+  /// `sum` are padded; its lower triangle is undefined.
   void add_square(RowMatrix& sum, double weight = 1);
-  /// The columns under the metric, at the equations: real parts, then imaginary parts with opposite
-  /// sign; 2 equations x columns, padded. As Weights::add_shares() takes them.
+  /// Returns the columns under the metric, at the equations: real parts, then negated imaginary
+  /// parts; 2 equations x columns, padded, as in Weights::add_shares().
   const RowMatrix& at_equations() const { return at_equations_; }
 
-  /// Where a direction of forces is not zero.
+  /// A nonzero entry of a direction of forces.
   struct Entry {
     Eigen::Index equation;
     double real, imaginary;
   };
   using Direction = std::vector<Entry>;
   static Direction of_force(const Eigen::VectorXd& force);
-  /// Of an axis' reading, in this bin.
+  /// Returns the direction of an axis' reading in this bin.
   const Direction& of_axis(Eigen::Index axis) const {
     return axes_[static_cast<std::size_t>(axis)];
   }
-  /// direction^H metric: equations.
+  /// Returns direction^H metric: one entry per equation.
   Eigen::RowVectorXcd under_metric(const Direction& direction) const;
-  /// a^H metric b.
+  /// Returns a^H metric b.
   std::complex<double> between(const Direction& a, const Direction& b) const;
-  /// Its product with every column: direction^H metric column.
+  /// Returns direction^H metric column for every column.
   Eigen::RowVectorXcd with_columns(const Direction& direction) const;
-  /// The same with the last column, the residual.
+  /// Returns direction^H metric column for the last column, the residual.
   std::complex<double> with_last(const Direction& direction) const;
-  /// sum += real(conj(size) direction^H metric column) of every column.
+  /// Adds real(conj(size) direction^H metric column) of every column to `sum`.
   void add_columns(const Direction& direction, std::complex<double> size,
                    Eigen::Ref<Eigen::VectorXd> sum) const;
-  /// rows^H column for every column; rows: whitened, of a bin that compute() need not have had.
+  /// Returns rows^H column for every column. rows: whitened rows of a bin, which need not be the
+  /// one of compute().
   Eigen::RowVectorXcd with_rows(Eigen::Index bin, const Eigen::VectorXcd& rows);
 
  private:
@@ -60,11 +62,11 @@ class BinProducts {
 
   void put_axes(Eigen::Index bin);
   void put_effects(Eigen::Index bin);
-  /// One column without a direction, as whitened rows.
+  /// Sets `out` to the whitened rows of one column without a direction.
   void put_effect(Eigen::Index bin, Eigen::Index column, Eigen::Ref<Eigen::VectorXcd> out) const;
-  /// The products of forces with every direction, from `under_`.
+  /// Computes the products of forces with every direction, from `under_`.
   void put_products();
-  /// The products of elements and axes with the columns, from those of the equations.
+  /// Computes the products of elements and axes with the columns, from those of the equations.
   void put_others();
 
   const Linearised& at_;

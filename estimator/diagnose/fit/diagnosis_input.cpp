@@ -7,7 +7,6 @@
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/model/run_system.h"
-#include "estimator/diagnose/spectra/delay.h"
 #include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/eigenvalues.h"
@@ -21,22 +20,23 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kBandLow = 0.4, kBandHigh = 1.6;  ///< of the lowest and highest natural frequency
-constexpr double kBandOfRead = 2;                  ///< of the highest frequency of what axes read
+constexpr double kBandOfRead = 2;                  ///< of the highest frequency that axes read
 constexpr double kComponentBandLow = 0.1;  ///< displacement is accurate at far lower frequencies
 constexpr double kForceTail = 5e-4;  ///< of a measured force's power, below its band and above
 constexpr double kHighest = 0.4;     ///< of the sampling rate
-/// Bins times equations^1.5, about the work of a fit: the band of a large building ends where it
-/// has so many, but includes the lowest modes.
+/// Bins times equations^1.5, about the work of a fit. The band of a large building ends at this
+/// work, but includes the lowest modes.
 constexpr double kMaxWork = 4e5;
 constexpr double kLowestModes = 5;  ///< times the lowest natural frequency
-constexpr int kDesignFits = 2;      ///< of a building that has no design
+constexpr int kDesignFits = 2;      ///< of a building without a design
 constexpr double kMinOfGuess = 0.01;
 constexpr double kMinSignal = 5;  ///< rms of a floor's motion in the band over its noise
 constexpr double kSlowLow = 0.1, kSlowHigh = 0.5;  ///< of the lowest natural frequency
 constexpr double kApart = 0.25;                    ///< of the lowest natural period
-constexpr double kAlike = 0.95, kLessAlike = 0.8;  ///< correlation; of that, without the delay
+constexpr double kAlike = 0.95,
+                 kLessAlike = 0.8;  ///< correlation; undelayed correlation relative to it
 
-/// Natural frequencies of the design, with the bending of its frames.
+/// Returns the natural frequencies of the design, including the bending of its frames.
 std::vector<double> design_frequencies(const Structure& structure, const Plant& plant,
                                        const VectorXd& design) {
   if (!plant.bending.any())
@@ -48,8 +48,9 @@ std::vector<double> design_frequencies(const Structure& structure, const Plant& 
   return out;
 }
 
-/// Twice the highest frequency of motions that axes read while the other ones that they read rest
-/// and unread ones follow as if slow, Hz: above it what axes read says little of what is between.
+/// Returns twice the highest frequency, Hz, of motions that axes read, with the other read motions
+/// at rest and the unread ones following statically. Above it the readings say little about the
+/// motion between them.
 double highest_read_hz(const Plant& plant) {
   const RunSystem system = run_system(plant, initial_model(plant), {});
   const Eigen::MatrixXd own = plant.unread.transpose() * system.stiffness * plant.unread;
@@ -60,8 +61,8 @@ double highest_read_hz(const Plant& plant) {
   return kBandOfRead * std::sqrt(stiffness.cwiseQuotient(mass).maxCoeff()) / (2 * M_PI);
 }
 
-/// Where nearly all of a force lies that a prescribed motion needs. Nothing else limits the band: a
-/// component may have any mass, or none.
+/// Returns the band that contains nearly all of the force of a prescribed motion. Nothing else
+/// limits the band: a component may have any mass, or none.
 Band band_of_force(const VectorXd& force, double rate_hz) {
   const Index size = smooth_size(force.size());
   VectorXd periodic = force.head(size).array() - force.head(size).mean();
@@ -79,7 +80,7 @@ Band band_of_force(const VectorXd& force, double rate_hz) {
           std::min(kHighest * rate_hz, step_hz * static_cast<double>(high))};
 }
 
-/// The records in the band of the design's natural frequencies.
+/// Returns the records in the band of the design's natural frequencies.
 std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& plant,
                                        const VectorXd& design, const ComponentTest& component,
                                        const std::vector<RecordSamples>& records) {
@@ -104,7 +105,7 @@ std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& 
   return out;
 }
 
-/// Of the axes above the base, the upper median of motion in the band over noise.
+/// Returns the upper median, over the axes above the base, of motion in the band over noise.
 double signal_ratio(const Plant& plant, const RecordSegment& s) {
   std::vector<double> ratios;
   for (Index a = 0; a < plant.axis_count(); ++a)

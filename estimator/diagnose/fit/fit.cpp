@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kLongestStep = 0.5;          ///< of a stiffness, relative to the design
-constexpr int kTries = 7, kTriesOfLarge = 4;  ///< of a step, with more and more damping
+constexpr int kTries = 7, kTriesOfLarge = 4;  ///< of a step, with increasing damping
 
 double total_misfit(const std::vector<Whitened>& systems) {
   double out = 0;
@@ -67,7 +67,7 @@ double Fitter::expected(std::size_t record, const Model& model) const {
   double n = static_cast<double>(plant_.read_equations());
   for (const ModelEffect& e : model.effects)
     n -= e.form == LawForm::clipped || e.form == LawForm::broadband;
-  // The ends of motions that no axis reads have two values each.
+  // The end terms of motions that no axis reads have two values each.
   return n * static_cast<double>(segments_[record].bins()) - 2 * n -
          static_cast<double>(plant_.unread.cols());
 }
@@ -82,7 +82,7 @@ double Fitter::prior_cost(const Model& model) const {
   double sum = 0;
   for (const Unknown& u : unknowns_of(plant_, model, tolerances_))
     if (u.sigma > 0) {
-      const double away = (value_of(model, u) - u.centre) / u.sigma;
+      const double away = (value_of(model, u) - u.center) / u.sigma;
       sum += 0.5 * away * away;
     }
   return sum;
@@ -122,7 +122,7 @@ Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
     if (unknown.sigma <= 0) continue;
     // The misfit is half of a sum of squares with variance one.
     out.prior[u] = 0.5 / (unknown.sigma * unknown.sigma);
-    out.pull[u] = out.prior[u] * (unknown.centre - value_of(model, unknown));
+    out.pull[u] = out.prior[u] * (unknown.center - value_of(model, unknown));
   }
   out.columns.resize(segments_.size());
   of_all([&](std::size_t r) {
@@ -150,7 +150,7 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   double damping = 1e-6;
   const int tries = plant_.is_large() ? kTriesOfLarge : kTries;
   int worse = 0;
-  double weighted = total_misfit(now);  // when the weights were those of the model
+  double weighted = total_misfit(now);  // misfit when the weights were computed
   bool own_weights = true;
   for (; out.steps < options.max_steps; ++out.steps) {
     if (!own_weights && total_misfit(now) < kNearNoise * expected(out.model)) {
@@ -163,8 +163,8 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
     }
     const Linearised at = linearise(out.model, std::move(now), options, &caches);
     NormalEquations equations = normal_equations(at, within_);
-    // Within a step the weights stay those of `at`: a wrong model must not reduce its misfit by
-    // weights that grow soft. Near the noise the change of the weights is part of the gradient.
+    // The weights stay those of `at` within a step, because a wrong model must not lower its misfit
+    // by softer weights. Near the noise, the change of the weights is part of the gradient.
     const double before = at.level * prior_cost(out.model) + total_misfit(at.systems);
     equations.normal.diagonal() += at.prior;
     bool better = false;
@@ -177,22 +177,22 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
         damping = std::max(1e-4, damping * 20);
         continue;
       }
-      const Model trial = moved(out.model, at.unknowns, step);
+      const Model candidate = moved(out.model, at.unknowns, step);
       std::vector<Whitened> then =
-          systems(trial, out.motion, options.forcing, &at.systems, &caches);
+          systems(candidate, out.motion, options.forcing, &at.systems, &caches);
       const bool falls =
-          !then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before;
+          !then.empty() && total_misfit(then) + at.level * prior_cost(candidate) < before;
       const bool near = at.level < kNearNoise;
       if (falls && plant_.is_large() && !near && total_misfit(then) > kNewWeights * weighted) {
         now = std::move(then);
         own_weights = false;
       } else if (falls || (!then.empty() && near)) {
-        now = reweighted(trial, std::move(then));
+        now = reweighted(candidate, std::move(then));
         own_weights = true;
         if (!now.empty()) weighted = total_misfit(now);
       }
-      better = falls || (!now.empty() && total_misfit(now) + prior_cost(trial) < out.cost);
-      if (better) out.model = trial;
+      better = falls || (!now.empty() && total_misfit(now) + prior_cost(candidate) < out.cost);
+      if (better) out.model = candidate;
       damping = better ? std::max(1e-9, damping / 10) : std::max(1e-3, damping * 10);
     }
     if (!better || now.empty()) break;

@@ -4,16 +4,36 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/diagnose/law/sliding.h"
+#include "estimator/diagnose/law/law.h"
 
 namespace framewatch::estimator {
 namespace {
 
+constexpr double kFirstStep = 0.01;  ///< of the record
+constexpr int kOnsetSteps = 1;       ///< of a fit that compares onsets
+constexpr int kSettlingSteps = 4;    ///< after the last onset
+constexpr double kMinGain = 1;       ///< of the misfit
+
+/// Replaces the fit by one with another onset if that is better. Returns true if it was.
+bool moved(const Fitter& fitter, std::size_t record, double onset_s, FitResult& fit) {
+  FitOptions options;
+  options.max_steps = kOnsetSteps;
+  options.holds_tolerated = true;
+  Model model = fit.model;
+  double& onset = model.effects.back().onset_s[record];
+  if (onset == std::max(0.0, onset_s)) return false;
+  onset = std::max(0.0, onset_s);
+  FitResult other = fitter.fit(model, fit.motion, options);
+  if (!other.good || other.cost > fit.cost - kMinGain) return false;
+  fit = std::move(other);
+  return true;
+}
+
 constexpr double kStiffer[] = {1, 1.6, 2.5, 4}, kNarrower[] = {1, 0.9, 0.8};
-/// Forces of friction that are tried, of the spring's largest.
+/// Forces of friction to try, relative to the spring's largest.
 constexpr double kMinForce = 0.02, kNextForce = M_SQRT2;
 constexpr std::size_t kForces = 14, kStarts = 2;
-constexpr double kSticks = 3e-3;  ///< of the largest rate: below it friction holds
+constexpr double kSticks = 3e-3;  ///< of the largest rate: friction sticks below it
 constexpr double kSmoother = 3;
 constexpr double kFits = 1.5;  ///< misfit over the expected, below which a fit is a good start
 
@@ -21,7 +41,7 @@ bool ends_with_clearance(const Model& model) {
   return !model.effects.empty() && is_contact(model.effects.back().form);
 }
 
-/// A model's free run, not fitted.
+/// Returns a model's free run, not fitted.
 FitResult as_it_runs(const Fitter& fitter, const Model& model,
                      const std::vector<Eigen::MatrixXcd>& motion) {
   FitOptions run;
@@ -30,9 +50,9 @@ FitResult as_it_runs(const Fitter& fitter, const Model& model,
   return fitter.fit(model, motion, run);
 }
 
-/// Friction between the forces that were tried, and as smooth as comes nearest: from a force that
-/// is too large no step leads down, since it holds.
-FitResult closer(const Fitter& fitter, FitResult best) {
+/// Refines friction between the tried forces, and its smoothness. A fit cannot do this: from a
+/// force that is too large, friction sticks and no step lowers the cost.
+FitResult refined_friction(const Fitter& fitter, FitResult best) {
   const auto try_with = [&](double force, double smoothness) {
     Model model = best.model;
     std::vector<LawParameter>& parameters = model.effects.back().parameters;
@@ -48,7 +68,7 @@ FitResult closer(const Fitter& fitter, FitResult best) {
   return best;
 }
 
-/// Mean factor of the design that the frames of a model have, but one.
+/// Returns the mean factor of the design over the frames of a model, except one.
 double mean_factor(const Plant& plant, const Model& model, int but) {
   double sum = 0;
   int count = 0;
@@ -98,10 +118,29 @@ std::vector<FitResult> friction_starts(const Fitter& fitter, const Model& from) 
   for (std::size_t i = 0; i < kForces; ++i)
     if (tried[i].good && (i == 0 || is_better(tried[i], tried[i - 1])) &&
         (i + 1 == kForces || is_better(tried[i], tried[i + 1])))
-      out.push_back(closer(fitter, tried[i]));
+      out.push_back(refined_friction(fitter, tried[i]));
   std::stable_sort(out.begin(), out.end(), is_better);
   if (out.size() > kStarts) out.resize(kStarts);
   return out;
+}
+
+bool ends_with_harmonic(const Model& model) {
+  return !model.effects.empty() && model.effects.back().form == LawForm::harmonic;
+}
+
+FitResult with_onsets(const Fitter& fitter, FitResult fit) {
+  for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
+    const RecordSegment& s = fitter.segments()[r];
+    const auto onset = [&] { return fit.model.effects.back().onset_s[r]; };
+    if (onset() > 0) moved(fitter, r, 0, fit);
+    for (double step = kFirstStep * s.seconds(); step > 1 / s.rate_hz; step /= 2)
+      while (moved(fitter, r, onset() - step, fit) || moved(fitter, r, onset() + step, fit)) {
+      }
+  }
+  FitOptions options;
+  options.max_steps = kSettlingSteps;
+  FitResult last = fitter.fit(fit.model, fit.motion, options);
+  return last.good && last.cost < fit.cost ? last : fit;
 }
 
 }  // namespace framewatch::estimator

@@ -6,16 +6,24 @@
 
 namespace framewatch::estimator {
 
-/// Start values for the free run of a fit that was driven by measured, noisy motion. A stiff
-/// mechanical clearance comes out of such a fit softer and wider than it is, and a free run does
-/// not converge from there: the best of some stiffer and narrower ones is returned. Fits without a
-/// clearance, and those that fit already, are returned unchanged.
+/// Returns start values for the free run of a fit that was driven by measured, noisy motion. Such a
+/// fit finds a stiff mechanical clearance too soft and too wide, and a free run does not converge
+/// from there. Tries stiffer and narrower clearances and returns the best. Returns fits without a
+/// clearance, and fits that are good already, unchanged.
 FitResult free_run_start(const Fitter& fitter, FitResult fit);
 
-/// Start values for the free run of friction that sticks so long that measured, noisy motion says
-/// little of its force. `model` ends with it, the building is as its place left it. Of forces from
-/// .02 to 1.8 of the spring's at its largest deformation those that come nearer than their
-/// neighbours, two at most, best first.
+/// Returns start values for the free run of friction that sticks so long that measured, noisy
+/// motion does not determine its force. model: ends with the friction; the building is fitted with
+/// arbitrary signals at its place. Tries forces from 0.02 to 1.8 of the spring's force at its
+/// largest deformation. Returns at most two local optima, best first.
 std::vector<FitResult> friction_starts(const Fitter& fitter, const Model& model);
+
+/// Returns true if the last effect of a model is a harmonic force.
+bool ends_with_harmonic(const Model& model);
+
+/// Refines the onsets of the harmonic force that is a fit's last effect. In one record after
+/// another it descends to the onset where the whole model fits best, from the present onset and
+/// from the record's start. The measured motion alone may miss the first second or so.
+FitResult with_onsets(const Fitter& fitter, FitResult fit);
 
 }  // namespace framewatch::estimator

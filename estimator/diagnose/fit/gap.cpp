@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <vector>
 
-#include "estimator/diagnose/fit/axis_readings.h"
-#include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/structure/story_groups.h"
 
 namespace framewatch::estimator {
+namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
@@ -18,15 +19,13 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-namespace {
-
 double mean_of(double Gap::*value, const std::vector<Gap>& gaps, std::size_t from) {
   double sum = 0;
   for (std::size_t r = from; r < gaps.size(); ++r) sum += gaps[r].*value;
   return gaps.size() > from ? sum / static_cast<double>(gaps.size() - from) : 0;
 }
 
-/// Subtracts from e what arbitrary forces explain of it, estimated with the noise covariance.
+/// Subtracts from e the part that arbitrary forces explain, estimated with the noise covariance.
 void subtract_forces(const MatrixXcd& directions, const MatrixXcd& covariance, VectorXcd& e) {
   const ComplexCholesky factor(covariance);
   if (!factor.good()) return;
@@ -36,14 +35,14 @@ void subtract_forces(const MatrixXcd& directions, const MatrixXcd& covariance, V
   e -= directions * force;
 }
 
-/// What an axis above the base reads of the coordinates.
+/// Returns the reading of an axis above the base as a row over the coordinates.
 Eigen::RowVectorXd reading_of(const Plant& plant, const SensorAxis& axis) {
   const std::vector<double> weights = frame_weights(plant.structure, axis);
   return Eigen::Map<const Eigen::RowVectorXd>(weights.data(), plant.structure.frames()) *
          plant.constraint.middleRows(plant.structure.dof(axis.story, 0), plant.structure.frames());
 }
 
-/// Sets the difference of a clipped axis: the simulated reading is clipped like the measured one.
+/// Sets the difference of a clipped axis: clips the simulated reading like the measured one.
 void clip_difference(const RecordSegment& segment, const VectorXcd& measured, Index axis,
                      MatrixXcd& difference) {
   const Eigen::VectorXd reading = signal_of(measured, segment, 1);
@@ -51,19 +50,20 @@ void clip_difference(const RecordSegment& segment, const VectorXcd& measured, In
       signal_of(VectorXcd(measured - difference.row(axis).transpose()), segment, 1);
   const Eigen::VectorXd raw = segment.accel.col(axis).head(reading.size());
   const double level = 0.5 * (raw.maxCoeff() - raw.minCoeff());
-  // Outside the band the simulated reading is taken to be the measured one.
+  // Outside the band the simulated reading is assumed equal to the measured one.
   const Eigen::VectorXd outside = raw - reading;
   const Eigen::VectorXd cut = (simulated + outside).cwiseMax(-level).cwiseMin(level) - outside;
   difference.row(axis) = band_of(reading - cut, segment, 1).transpose();
 }
 
-/// Rms of a signal in the band, mean over `axes`; power: sum of |spectrum|^2 over bins and axes.
+/// Returns the rms of a signal in the band, mean over `axes`. power: sum of |spectrum|^2 over bins
+/// and axes.
 double rms_of(double power, Index axes, const RecordSegment& segment) {
   const double intervals = static_cast<double>(segment.intervals());
   return std::sqrt(2 * power / static_cast<double>(std::max<Index>(1, axes))) / intervals;
 }
 
-/// Gap of the force, where a component's motion is prescribed and the force measured.
+/// Returns the gap of the force if a component's motion is prescribed and the force measured.
 Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segment,
               const Whitened& system) {
   const Index n = plant.equations(), axes = plant.axis_count(), bins = system.bins();
@@ -90,6 +90,34 @@ Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segme
 }
 
 }  // namespace
+
+bool is_output(const Plant& plant, Index axis) {
+  return plant.prescribed ? plant.is_force(axis) : !plant.is_input(axis);
+}
+
+std::vector<RecordSegment> with_model_error(const Plant& plant,
+                                            const std::vector<RecordSegment>& segments,
+                                            double share) {
+  std::vector<RecordSegment> out = segments;
+  for (RecordSegment& s : out) {
+    double power = 0;
+    Index outputs = 0;
+    for (Index a = 0; a < plant.axis_count(); ++a) {
+      if (!is_output(plant, a)) continue;
+      ++outputs;
+      for (Index b = 0; b < s.bins(); ++b)
+        power += std::norm(s.spectrum(a, b)) / (s.is_displaced(a) ? std::pow(s.w[b], 4) : 1.0);
+    }
+    const auto numbers = static_cast<double>(std::max<Index>(1, outputs * s.bins()));
+    const double variance =
+        share * share * power / (numbers * static_cast<double>(std::max<Index>(1, s.intervals())));
+    const double noise = s.variance.sum();
+    for (Index a = 0; a < plant.axis_count(); ++a)
+      if (is_output(plant, a)) s.variance[a] += variance;
+    s.corner_hz *= noise / std::max(s.variance.sum(), 1e-300);  // the model's error is white
+  }
+  return out;
+}
 
 Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
            const Whitened& system) {

@@ -6,29 +6,32 @@
 #include <optional>
 #include <utility>
 
-#include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/model/modal_damping.h"
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr double kDiverged = std::numeric_limits<double>::infinity();
-constexpr int kRounds = 6;        ///< in which the weights follow the gap
-constexpr double kMore = 0.99;    ///< gap over the one of the round before: it goes on
-constexpr double kLargest = 1;    ///< error of a model for its weights
-constexpr int kFirstSteps = 4;    ///< of every start, before the best is fitted on
-constexpr double kClose = 1.1;    ///< gap over the best one's: a start that is fitted on as well
-constexpr double kHonest = 0.97;  ///< gap with a damping that is no dashpots', over that with them
+constexpr int kRounds = 6;  ///< in which the weights follow the gap
+constexpr double kMore =
+    0.99;  ///< gap over that of the previous round, below which rounds continue
+constexpr double kLargest = 1;  ///< model error in the weights
+constexpr int kFirstSteps = 4;  ///< of every start, before the best is fitted further
+constexpr double kClose =
+    1.1;  ///< gap over the best one's, below which a start is fitted further too
+constexpr double kHonest = 0.97;  ///< gap with modal damping over that with dashpots only
 constexpr double kFewDashpots = 0.1, kUsualRatio = 0.005;
-constexpr double kSameGap = 1e-9;  ///< of gaps, relative: those of one model
-constexpr double kSameEnd = 5e-3;  ///< the same of fits that ended at one place
+constexpr double kSameGap = 1e-9;  ///< relative difference of gaps of one model
+constexpr double kSameEnd = 5e-3;  ///< relative difference of gaps of fits that ended at one place
 
 struct Start {
   Model model;
   double gap = kDiverged;
 };
 
-/// The free run of a model fitted with its own error in the weights; unchanged where that is worse.
+/// Fits the free run of a model with its gap as model error in the weights. Unchanged if the result
+/// is worse.
 void fit_free_run(const Fitter& fitter, int steps, Start& at) {
   const std::vector<RecordSegment> segments =
       with_model_error(fitter.plant(), fitter.segments(), std::min(at.gap, kLargest));
@@ -47,7 +50,7 @@ void fit_to_the_end(const Fitter& fitter, int steps, Start& at) {
   }
 }
 
-/// Sorted by their gaps, once each of those that are the same but for a share `same` of them.
+/// Sorts by gap. Keeps one of those whose gaps differ by less than a share `same`.
 void sort_starts(double same, std::vector<Start>& all) {
   std::stable_sort(all.begin(), all.end(),
                    [](const Start& a, const Start& b) { return a.gap < b.gap; });
@@ -57,7 +60,7 @@ void sort_starts(double same, std::vector<Start>& all) {
   all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
 }
 
-/// Without those whose gap is far above that of the first, the best.
+/// Removes starts whose gap is far above that of the first, the best.
 void keep_close(std::vector<Start>& sorted) {
   const double limit = kClose * sorted.front().gap;
   sorted.erase(std::find_if(sorted.begin() + 1, sorted.end(),
@@ -65,8 +68,8 @@ void keep_close(std::vector<Start>& sorted) {
                sorted.end());
 }
 
-/// Starts whose modes in the band have ratios of their own: beside the dashpots, and beside few of
-/// them. None where all have them already.
+/// Returns starts that free the damping ratios of the modes in the band: with the dashpots, and
+/// with few of them. Returns an empty list if all ratios are free already.
 std::vector<Model> with_ratios(const Fitter& fitter, const Model& model) {
   const Plant& plant = fitter.plant();
   const std::vector<std::size_t> ratios = modes_in_band(plant, model, fitter.segments());
@@ -88,9 +91,9 @@ std::vector<Model> with_ratios(const Fitter& fitter, const Model& model) {
   return {std::move(beside), std::move(instead)};
 }
 
-/// Damping may be none that dashpots between floors make: ratios of the modes stay where the gap
-/// falls clearly with them. ends: where fits without them ended, best first; the best with them may
-/// begin at another one.
+/// Frees modal damping ratios if the gap falls clearly with them, because dashpots between floors
+/// cannot describe all damping. ends: of the fits without ratios, best first; the best fit with
+/// ratios may start at another one.
 Start with_free_ratios(const Fitter& fitter, int steps, const std::vector<Start>& ends,
                        const Parallel& parallel) {
   std::vector<Start> all;

@@ -1,10 +1,8 @@
 #include "estimator/diagnose/fit/law_tracks.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "estimator/diagnose/fit/axis_readings.h"
 #include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/numeric/complex.h"
@@ -17,9 +15,7 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 Forcing forcing_of(const Model& model) {
-  const bool laws = std::any_of(model.effects.begin(), model.effects.end(),
-                                [](const ModelEffect& e) { return e.element_law(); });
-  return laws ? Forcing::simulated : Forcing::measured;
+  return has_element_law(model) ? Forcing::simulated : Forcing::measured;
 }
 
 Equivalent equivalent_of(const LawTrack& track) {
@@ -53,8 +49,7 @@ std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& 
                                                const RecordSegment& segment, std::size_t record,
                                                Forcing forcing, const MatrixXcd& motion, int ratio,
                                                RunCache* cache) {
-  const bool any = std::any_of(model.effects.begin(), model.effects.end(),
-                               [](const ModelEffect& e) { return e.element_law(); });
+  const bool any = has_element_law(model);
   if (forcing == Forcing::simulated && any && !plant.prescribed) {
     FreeRun run = free_run(plant, model, segment, record, ratio, cache);
     if (!run.good) return std::nullopt;

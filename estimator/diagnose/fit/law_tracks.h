@@ -11,16 +11,16 @@
 
 namespace framewatch::estimator {
 
-/// Which motion drives the element laws of a model: the measured one (equation by equation), or
-/// that of the model's own free run under the measured motion of the base.
+/// The motion that drives the element laws of a model: the measured motion (equation by equation),
+/// or the motion of the model's free run under the measured motion of the base.
 enum class Forcing { measured, simulated };
 
-/// The free run where a model has element laws; a linear model needs none.
+/// Returns Forcing::simulated if the model has element laws; a linear model needs no free run.
 Forcing forcing_of(const Model& model);
 
-/// Motion and force of the model's element laws. motion: axes x bins that drives them when forcing
-/// is `measured`; empty: the calibrated readings. Empty when the free run diverges.
-/// cache: of one thread; null: none.
+/// Returns motion and force of the model's element laws, or nullopt if the free run diverges.
+/// `motion`: axes x bins, drives the laws if forcing is `measured`; empty: the calibrated readings.
+/// `ratio`: steps per sample. `cache`: not shared between threads; null: no cache.
 std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& model,
                                                const RecordSegment& segment, std::size_t record,
                                                Forcing forcing, const Eigen::MatrixXcd& motion,
@@ -32,11 +32,12 @@ struct Equivalent {
 };
 
 Equivalent equivalent_of(const LawTrack& track);
-/// Spectrum of a force minus that of a linear element. d: spectrum of its deformation, m; w: rad/s.
+/// Returns the spectrum of a force minus that of a linear element. d: spectrum of its deformation,
+/// m; w: rad/s.
 Eigen::VectorXcd beyond(const Equivalent& linear, const Eigen::VectorXcd& force,
                         const Eigen::VectorXcd& d, const Eigen::VectorXd& w);
 
-/// Spectrum of a harmonic force from outside, N.
+/// Returns the spectrum of an external harmonic force, N.
 Eigen::VectorXcd harmonic_bins(const ModelEffect& effect, const RecordSegment& segment,
                                std::size_t record);
 

@@ -1,5 +1,9 @@
 #include "estimator/diagnose/fit/measured_deformation.h"
 
+#include <cmath>
+#include <complex>
+#include <utility>
+
 #include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/numeric/complex.h"
 
@@ -30,7 +34,7 @@ MeasuredDeformation displaced(const RecordSegment& segment, const RowVectorXd& s
   for (Index a = 0; a < sense.size(); ++a)
     if (segment.is_displaced(a)) d += sense[a] * segment.accel.col(a);
 
-  // A line between the ends is taken off, and added again: the rest is periodic.
+  // Subtracts a line between the ends and adds it again, so that the rest is periodic.
   const double slope = (d[samples] - d[0]) / static_cast<double>(samples), first = d[0];
   const VectorXd line =
       VectorXd::LinSpaced(samples, first, first + slope * static_cast<double>(samples - 1));
@@ -45,8 +49,8 @@ MeasuredDeformation displaced(const RecordSegment& segment, const RowVectorXd& s
   return out;
 }
 
-/// Spectrum of the deformation's acceleration from 0 to just below half the sampling rate, its
-/// readings above the band where axes read all of it, nothing below.
+/// Returns the spectrum of the deformation's acceleration from 0 to just below half the sampling
+/// rate: zero below the band, and the readings above it if axes read all of it.
 VectorXcd acceleration(const RecordSegment& segment, const RowVectorXd& sense,
                        const MatrixXcd& motion) {
   const Index samples = segment.intervals(), end = segment.first_bin + segment.bins();
@@ -62,6 +66,35 @@ VectorXcd acceleration(const RecordSegment& segment, const RowVectorXd& sense,
 }
 
 }  // namespace
+
+MatrixXcd calibrated(const Model& model, const RecordSegment& segment) {
+  MatrixXcd out = segment.spectrum;
+  for (const ModelEffect& e : model.effects)
+    if (e.form == LawForm::swapped) out.row(e.place.channel).swap(out.row(e.place.with_channel));
+  for (Index a = 0; a < out.rows(); ++a)
+    for (Index b = 0; b < out.cols(); ++b)
+      out(a, b) *= 1 / (1 + model.gain[a]) * std::polar(1.0, segment.w[b] * model.clock_s[a]);
+  const MatrixXcd straight = out;
+  for (const ModelEffect& e : model.effects) {
+    if (e.form != LawForm::misaligned) continue;
+    const double angle = e.parameters[0].plain();
+    out.row(e.place.channel) =
+        (straight.row(e.place.channel) - std::sin(angle) * straight.row(e.place.with_channel)) /
+        std::cos(angle);
+  }
+  return out;
+}
+
+VectorXd bin_noise(const Model& model, const RecordSegment& segment, Index bin) {
+  VectorXd out = static_cast<double>(segment.intervals()) * segment.variance;
+  out *= 1 + 2 * M_PI * segment.corner_hz / segment.w[bin];
+  out.array() /= (1 + model.gain.array()).square();
+  for (Index a = 0; a < out.size(); ++a)
+    if (segment.is_displaced(a)) out[a] *= std::pow(segment.w[bin], 4);
+  for (const ModelEffect& e : model.effects)
+    if (e.form == LawForm::swapped) std::swap(out[e.place.channel], out[e.place.with_channel]);
+  return out;
+}
 
 MeasuredDeformation measured_deformation(const Plant& plant, const RecordSegment& segment,
                                          const RowVectorXd& sense, const MatrixXcd& motion,

@@ -4,13 +4,27 @@
 
 #include <Eigen/Core>
 
-#include "estimator/diagnose/fit/linearised.h"
+#include "estimator/diagnose/fit/fit_columns.h"
+#include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
 
-/// Gram matrix of the unknowns `kept`, the residual and the end terms, in this order. Of a large
-/// building the end terms are projected out of the residual and there are none here; the unknowns'
-/// own products are those of sampled_bins().
+/// A bin that stands for `weight` bins in the curvature of a fit.
+struct SampledBin {
+  Eigen::Index bin = 0;
+  double weight = 1;
+};
+
+/// Returns the bins whose products make up the curvature of a fit to a large building: about an
+/// eighth of all. Bins with much motion are always included; others are sampled with a chance
+/// proportional to their share of it (systematic sampling, weighted by the inverse chance). Bins
+/// with much of an effect's column are included too. The curvature only directs steps; gradients
+/// and misfits use all bins.
+std::vector<SampledBin> sampled_bins(const Linearised& at, std::size_t record);
+
+/// Returns the Gram matrix of the unknowns `kept`, the residual and the end terms, in this order.
+/// For a large building there are no end terms (they are projected out of the residual), and the
+/// unknowns' products are those of sampled_bins().
 Eigen::MatrixXd square_of(const Linearised& at, std::size_t record,
                           const std::vector<Eigen::Index>& kept);
 
@@ -23,16 +37,16 @@ struct NormalEquations {
   NormalEquations& operator+=(const NormalEquations& other);
 };
 
-/// Solves normal * step = right within the unknowns' bounds: unknowns that would leave them stop
-/// there, and the others are solved again. Not finite when there is no solution.
+/// Solves normal * step = right within the unknowns' bounds. Unknowns that would leave their bounds
+/// stop there, and the others are solved again. The result is not finite if there is no solution.
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right,
                              const Model& model, const std::vector<Unknown>& unknowns);
 
-/// How many end terms square_of() gives.
+/// Returns the number of end terms of square_of().
 Eigen::Index ends_of(const Linearised& at, std::size_t record);
-/// square: as square_of() gives it; ends: how many end terms.
+/// Eliminates the end terms. square: from square_of(); ends: number of end terms.
 NormalEquations without_ends(const Eigen::MatrixXd& square, Eigen::Index ends);
-/// Of all segments together.
+/// Returns the sum over all segments.
 NormalEquations normal_equations(const Linearised& at, const Parallel& within = {});
 
 }  // namespace framewatch::estimator

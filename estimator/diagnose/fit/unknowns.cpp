@@ -10,8 +10,8 @@ using Kind = Unknown::Kind;
 
 constexpr double kTightK = 0.6, kTightG = 1.0, kTightC = 3.0;  ///< weak priors, relative
 constexpr double kMaxSigmas = 4;  ///< of masses, gains and clocks from their declared values
-/// Of the design's stiffness or damping. Structures dissipate; and a mode that neither dissipates
-/// nor is driven from the base would have no noise in its equation.
+/// Lower bound, of the design's stiffness or damping. Structures dissipate, and the equation of a
+/// mode that neither dissipates nor is driven from the base would have no noise.
 constexpr double kMin = 0.02;
 constexpr double kLooseGain = 0.05, kLooseClock_s = 1e-3;  ///< units
 constexpr double kAny = std::numeric_limits<double>::infinity();
@@ -47,10 +47,10 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
     return false;
   };
   // An axis error that is an effect has neither prior nor bounds.
-  const auto add_axis = [&](Kind kind, int axis, bool loose, double scale, double centre) {
-    out.push_back(loose ? Unknown{kind, axis, 0, 0, scale, 0.0, centre, -kAny, kAny}
-                        : Unknown{kind, axis, 0, 0, scale, 1.0, centre, centre - kMaxSigmas,
-                                  centre + kMaxSigmas});
+  const auto add_axis = [&](Kind kind, int axis, bool loose, double scale, double center) {
+    out.push_back(loose ? Unknown{kind, axis, 0, 0, scale, 0.0, center, -kAny, kAny}
+                        : Unknown{kind, axis, 0, 0, scale, 1.0, center, center - kMaxSigmas,
+                                  center + kMaxSigmas});
   };
   for (int a = 0; a < static_cast<int>(plant.axis_count()); ++a) {
     const bool loose = freed(model.free_gain, a);
@@ -70,7 +70,7 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
       if (parameter.free)
         out.push_back({kind, static_cast<int>(e), static_cast<int>(index), static_cast<int>(record),
                        parameter.step, parameter.sigma > 0 ? parameter.sigma / parameter.step : 0.0,
-                       parameter.centre / parameter.step, parameter.low / parameter.step,
+                       parameter.center / parameter.step, parameter.low / parameter.step,
                        parameter.high / parameter.step});
     };
     for (std::size_t k = 0; k < effect.parameters.size(); ++k)

@@ -8,22 +8,22 @@
 
 namespace framewatch::estimator {
 
-/// One standard deviation of quantities that are declared but not exactly known. 0: exact.
+/// Standard deviations of declared quantities that are not known exactly. 0: exact.
 struct Tolerances {
   double mass = 0.01;        ///< relative, of the mass at every degree of freedom
   double gain = 0.005;       ///< relative, of every axis
   double clock_s = 0.25e-3;  ///< of every axis
 };
 
-/// One unknown of a fit: which member of a model it is, its unit, prior and bounds.
+/// One unknown of a fit: the member of the model, its unit, prior and bounds.
 struct Unknown {
   enum class Kind { theta, mass, gain, clock, parameter, record_parameter } kind;
-  int index = 0;      ///< of theta, coordinate or axis; of the effect where it is a parameter
+  int index = 0;      ///< of theta, coordinate or axis; for a parameter, of its effect
   int parameter = 0;  ///< of that effect
   int record = 0;
   double scale = 1;  ///< one unit of the unknown in the member
-  double sigma = 0;  ///< of the prior, in units of the unknown; 0: none
-  double centre = 0;
+  double sigma = 0;  ///< of the prior, in units of the unknown; 0: no prior
+  double center = 0;
   double low = -std::numeric_limits<double>::infinity();  ///< bounds, in units of the unknown
   double high = std::numeric_limits<double>::infinity();
   /// Further members of theta with the same value, and their scales.
@@ -32,9 +32,9 @@ struct Unknown {
 
 std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
                                  const Tolerances& tolerances);
-/// Whether it is a mass, a gain or a clock within its tolerance, no effect.
+/// Returns true if the unknown is a mass, gain or clock within its tolerance, not an effect.
 bool is_tolerated(const Unknown& unknown);
-/// In units of the unknown.
+/// Returns the value in units of the unknown.
 double value_of(const Model& model, const Unknown& unknown);
 /// Sets the member, within the unknown's bounds.
 void set_value(Model& model, const Unknown& unknown, double value);

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/linear_operation.h"
 #include "estimator/diagnose/model/modal_damping.h"
+#include "estimator/diagnose/spectra/row_gram.h"
 #include "estimator/diagnose/spectra/whiteners.h"
 #include "estimator/numeric/complex.h"
+#include "estimator/numeric/kernels.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -20,10 +22,77 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr double kArbitrary = 1e6;   ///< variance of an arbitrary signal, over that of noise
-constexpr Index kMinNeighbours = 8;  ///< bins either side over which the misfit is averaged
+
+constexpr double kArbitrary = 1e6;  ///< variance of an arbitrary signal, over that of noise
+constexpr Index kMinNeighbors = 8;  ///< bins on either side over which the misfit is averaged
 
 }  // namespace
+
+Operations::Operations(const MatrixXd& mass, const MatrixXd& stiffness, const MatrixXd& damping,
+                       std::vector<LinearOperation> additions, VectorXd w)
+    : mass_(mass),
+      stiffness_(stiffness),
+      damping_(damping),
+      additions_(std::move(additions)),
+      w_(std::move(w)) {
+  constexpr Index kMaxKept = 1'000'000;  // numbers
+  const Index bins = w_.size();
+  if (mass_.size() * bins > kMaxKept) return;
+  for (Index b = 0; b < bins; ++b) kept_.push_back(made(b));
+}
+
+MatrixXcd Operations::times(const MatrixXcd& motion) const {
+  return product(motion, false);
+}
+
+MatrixXcd Operations::adjoint_times(const MatrixXcd& forces) const {
+  return product(forces, true);
+}
+
+MatrixXcd Operations::of_axis(Index axis) const {
+  MatrixXcd out(equations(), w_.size());
+  for (Index b = 0; b < out.cols(); ++b) {
+    if (!kept_.empty() || !additions_.empty()) {
+      out.col(b) = (*this)[static_cast<std::size_t>(b)].col(axis);
+      continue;
+    }
+    out.col(b).real() = mass_.col(axis) - stiffness_.col(axis) / (w_[b] * w_[b]);
+    out.col(b).imag() = damping_.col(axis) / -w_[b];
+  }
+  return out;
+}
+
+MatrixXcd Operations::made(Index bin) const {
+  const double w = w_[bin];
+  MatrixXcd out(mass_.rows(), mass_.cols());
+  out.real() = mass_ - stiffness_ / (w * w);
+  out.imag() = damping_ / -w;
+  for (const LinearOperation& addition : additions_) addition.add_to(w, out);
+  return out;
+}
+
+MatrixXcd Operations::product(const MatrixXcd& columns, bool adjoint) const {
+  const Index bins = w_.size();
+  // Real parts of all bins, then imaginary parts: one real product for each matrix.
+  RowMatrix parts = RowMatrix::Zero(columns.rows(), padded(static_cast<int>(2 * bins)));
+  parts.leftCols(bins) = columns.real();
+  parts.middleCols(bins, bins) = columns.imag();
+  const auto times_parts = [&](const MatrixXd& matrix) {
+    RowMatrix out;
+    multiply(adjoint ? RowMatrix(matrix.transpose()) : RowMatrix(matrix), parts, out);
+    return out;
+  };
+  const RowMatrix inert = times_parts(mass_), elastic = times_parts(stiffness_),
+                  viscous = times_parts(damping_);
+  MatrixXcd out(inert.rows(), bins);
+  for (Index b = 0; b < bins; ++b) {
+    const double square = w_[b] * w_[b], w = adjoint ? -w_[b] : w_[b];
+    out.col(b).real() = inert.col(b) - elastic.col(b) / square + viscous.col(bins + b) / w;
+    out.col(b).imag() = inert.col(bins + b) - elastic.col(bins + b) / square - viscous.col(b) / w;
+  }
+  for (const LinearOperation& addition : additions_) addition.add_times(w_, columns, adjoint, out);
+  return out;
+}
 
 VectorXd whiten_rows(const Whitened& s, const MatrixXcd& forces) {
   return s.weights->whitened(forces);
@@ -39,7 +108,8 @@ VectorXd whiten_axis(const Whitened& s, Index axis, const VectorXcd& signal) {
 
 namespace {
 
-/// bin_noise() with the variance of clipped axes raised: their readings count for nothing.
+/// Returns bin_noise() with the variance of clipped axes raised, so that their readings have no
+/// weight.
 VectorXd believed_noise(const Model& model, const RecordSegment& segment, Index bin) {
   VectorXd out = bin_noise(model, segment, bin);
   for (const ModelEffect& e : model.effects)
@@ -47,7 +117,7 @@ VectorXd believed_noise(const Model& model, const RecordSegment& segment, Index 
   return out;
 }
 
-/// believed_noise() of every bin: axes x bins.
+/// Returns believed_noise() of every bin: axes x bins.
 MatrixXd noise_of(const Model& model, const RecordSegment& segment) {
   MatrixXd out(model.gain.size(), segment.bins());
   for (Index b = 0; b < out.cols(); ++b) out.col(b) = believed_noise(model, segment, b);
@@ -60,8 +130,8 @@ HiddenOscillator hidden_oscillator(const Plant& plant, const ModelEffect& e, con
   return out;
 }
 
-/// The likeliest motion, docs/equations.md (34), with which the gradient is exact. Where the model
-/// does not fit, less of the residual is subtracted: it is not noise.
+/// Returns the likeliest motion, docs/equations.md (34), for which the gradient is exact. If the
+/// model does not fit, it subtracts less of the residual, because the residual is not noise.
 MatrixXcd shown_motion(const Plant& plant, const MatrixXd& noise, const Whitened& system) {
   MatrixXcd out = system.calibrated;
   const Index bins = system.bins(), n = plant.equations(), axes = plant.axis_count();
@@ -69,7 +139,7 @@ MatrixXcd shown_motion(const Plant& plant, const MatrixXd& noise, const Whitened
   VectorXd level(bins);
   for (Index b = 0; b < bins; ++b) level[b] = system.rest.segment(2 * n * b, 2 * n).squaredNorm();
   const bool fits = level.mean() < kNearNoise * rows;
-  const Index around = std::max<Index>(kMinNeighbours, bins / 60);
+  const Index around = std::max<Index>(kMinNeighbors, bins / 60);
   for (Index b = 0; b < bins; ++b) {
     const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
     const double local = level.segment(from, to - from).mean() / rows;
@@ -93,7 +163,7 @@ void follow_unread(const Plant& plant, const MatrixXcd& forces, const Operations
   }
 }
 
-/// The model's own weights; null where it has none.
+/// Returns the model's weights, or null if they cannot be computed.
 std::shared_ptr<const Weights> weights_of(const Plant& plant, const Model& model,
                                           const RecordSegment& segment, const MatrixXd& noise,
                                           const Operations& operations) {
@@ -116,7 +186,7 @@ std::shared_ptr<const Weights> weights_of(const Plant& plant, const Model& model
                                          all_read ? MatrixXd() : plant.read);
 }
 
-/// Sets what depends on the weights; those of the model where there are none.
+/// Sets everything that depends on the weights. weights: null: compute the model's weights.
 void weigh(const Plant& plant, const Model& model, const RecordSegment& segment,
            std::shared_ptr<const Weights> weights, Whitened& out) {
   const MatrixXd noise = noise_of(model, segment);
@@ -172,7 +242,7 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   for (const ModelEffect& e : model.effects) {
     if (e.element_law() || e.form == LawForm::modal_damping || e.form == LawForm::broadband)
       continue;
-    // A force from outside is on the other side of the equation.
+    // An external force is on the other side of the equation.
     if (e.form == LawForm::harmonic)
       out.forces -= node_direction(plant, e.place.story, e.place.frame) *
                     harmonic_bins(e, segment, record).transpose();

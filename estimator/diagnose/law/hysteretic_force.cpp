@@ -11,17 +11,17 @@ using S = SliderIndex;
 
 constexpr double kSharp = 20;          ///< exponent above which hysteresis is computed as bilinear
 constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
-constexpr double kYielded = 1e-12;  ///< change of z below which the rest of a step changes nothing
+constexpr double kYielded = 1e-12;     ///< change of z below which the integration stops
 constexpr double kMaxSlides = 5000;
-/// Share of the first slope from which a law that yields comes to its end as a linear one does, and
-/// from which longer steps do.
+/// Shares of the first slope. Below kNearlyYielded the rest of the step has a closed form; below
+/// kYields the steps are longer.
 constexpr double kNearlyYielded = 1e-3, kYields = 0.1;
 constexpr double kLongerSlide = 0.25;
 constexpr double kLargestZ = 1e3;  ///< of hysteresis that hardens
-/// Square of the distance from a slip zone, in its widths, beyond which it changes nothing.
+/// Square of the distance from a slip zone, in its widths, beyond which the zone has no influence.
 constexpr double kOutside = 40;
 
-/// dz/dd of one law, in units of dy.
+/// Slope dz/dd of one law, in units of dy.
 class Slope {
  public:
   Slope(const LawValues& values, const WornShape& shape)
@@ -36,7 +36,7 @@ class Slope {
     return slip(z, d, direction) * without_slip(z, direction);
   }
 
-  /// Share of the slope that the slip zone leaves.
+  /// Returns the share of the slope that the slip zone leaves.
   double slip(double z, double d, double direction) const {
     if (shape_.slip == 0) return 1;
     const double at = (pinched_ ? z * direction - offset_ : d) / p_[H::width];
@@ -49,11 +49,11 @@ class Slope {
     return (1 - level * turn) / shape_.softer;
   }
 
-  /// Share of its first slope that loading has left.
+  /// Returns the share of the first slope that loading has left.
   double share(double rising) const { return rising * shape_.softer; }
 
-  /// z after sliding on by `left` from where its share is small: it approaches its end as
-  /// exp(-rate travel), the slope's change with z held.
+  /// Returns z after a slide by `left` that starts where its share is small. z approaches its limit
+  /// as exp(-rate travel); the slope's change with z is held constant.
   double at_end(double z, double d, double direction, double left, double rising) const {
     const double rate = p_[H::exponent] * (1 - share(rising)) / (std::abs(z) * shape_.softer);
     const double travel = pinched_ ? left * slip(z, d, direction) : slid(d, direction, left);
@@ -61,7 +61,7 @@ class Slope {
   }
 
  private:
-  /// Integral of slip(), where it is about zero deformation.
+  /// Returns the integral of slip() for a zone around zero deformation.
   double slid(double d, double direction, double left) const {
     if (shape_.slip == 0) return left;
     const double width = p_[H::width], to = d + direction * left;
@@ -75,7 +75,7 @@ class Slope {
   double loading_ = 1, offset_ = 0;
 };
 
-/// Deformation at which a slider gives way.
+/// Returns the deformation at which a slider yields.
 double limit_of(const LawValues& values, std::size_t slider, double weaker) {
   const double place = (2.0 * static_cast<double>(slider) + 1) / S::kCount - 1;
   return values.p[S::dy] * (1 + values.p[S::spread] * place) / weaker;
@@ -196,9 +196,8 @@ double asymptotic_z(const LawValues& values, const std::vector<double>& memory, 
   const double direction = now[kDirection], dy = values.p[A::dy];
   const double way = direction - now[kReversalZ];
   if (direction == 0 || std::abs(way) < kNoWay) return z;
-  const double corner = now[kReversal_m] + way * dy;
-  const double beyond =
-      std::abs((direction > 0 ? now[kLargest_m] : now[kSmallest_m]) - corner) / dy;
+  const double knee = now[kReversal_m] + way * dy;
+  const double beyond = std::abs((direction > 0 ? now[kLargest_m] : now[kSmallest_m]) - knee) / dy;
   const double sharpness = std::max(
       values.p[A::sharpness] * (1 - values.p[A::loss] * beyond / (kHalf + beyond)), kMinSharpness);
   const double x = std::max((d_now - now[kReversal_m]) / (way * dy), 0.0);

@@ -3,19 +3,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/law/slack.h"
-#include "estimator/diagnose/law/sliding.h"
+#include "estimator/diagnose/law/hysteretic_force.h"
 
 namespace framewatch::estimator {
 namespace {
 
 using A = AmplitudeIndex;
+using I = FrictionIndex;
+
+constexpr double kAtRest = 1e-6;  // of v0
+
+/// Returns the rate, 1/s, at which z approaches its steady value.
+double approach_per_s(const std::vector<double>& p, double v) {
+  if (std::abs(v) < kAtRest * p[I::v0])
+    return p[I::v0] / ((1 + value_or(p, I::static_ratio, 0)) * p[I::presliding]);
+  return std::abs(v / steady_friction(p, v)) / p[I::presliding];
+}
 
 double signed_power(double x, double p) {
   return std::copysign(power_of(std::abs(x), p), x);
 }
 
-/// Contact toward positive deformation. It only pushes, where its spring hardens.
+/// Force of a contact toward positive deformation. It only pushes if its spring hardens.
 double contact(const std::vector<double>& p, double d, double v) {
   if (d <= p[1]) return 0;
   const double force = p[0] * (d - p[1]) + value_or(p, 2, 0) * v;
@@ -26,12 +35,68 @@ bool preslides(const LawValues& values) {
   return values.form == LawForm::friction && value_or(values.p, FrictionIndex::presliding, 0) > 0;
 }
 
-/// Whether z follows an equation of its rate.
+/// Returns true if z follows a rate equation.
 bool has_z(LawForm form) {
   return form == LawForm::hysteresis || form == LawForm::pinched || form == LawForm::slip_lock;
 }
 
 }  // namespace
+
+SlipCurve::End SlipCurve::follow(double x) const {
+  if (x == now_.x) return {reversals_.size(), now_.z};
+  const double direction = x > now_.x ? 1.0 : -1.0;
+  const bool turns = direction == -direction_;
+  const auto reversal = [&](std::size_t i) { return i < reversals_.size() ? reversals_[i] : now_; };
+  std::size_t open = reversals_.size() + (turns ? 1 : 0);
+  while (open > 0) {
+    const Point from = reversal(open - 1);
+    const double closes_at = open > 1 ? reversal(open - 2).x : -from.x;
+    if ((x - closes_at) * direction <= 0)
+      return {open, from.z + 2 * direction * std::pow(0.5 * std::abs(x - from.x), exponent_)};
+    open = open > 1 ? open - 2 : 0;
+  }
+  return {0, std::copysign(std::pow(std::abs(x), exponent_), x)};
+}
+
+void SlipCurve::move(double x) {
+  if (x == now_.x) return;
+  const End end = follow(x);
+  if (end.open > reversals_.size())
+    reversals_.push_back(now_);
+  else
+    reversals_.resize(end.open, now_);
+  direction_ = x > now_.x ? 1.0 : -1.0;
+  now_ = {x, end.z};
+}
+
+double steady_friction(const std::vector<double>& p, double v) {
+  double more = value_or(p, I::static_ratio, 0);
+  if (more != 0) more *= std::exp(-(v / p[I::stribeck]) * (v / p[I::stribeck]));
+  return (1 + more) * std::tanh(v / p[I::v0]);
+}
+
+/// Exact for a steady value that changes linearly and a constant rate of approach.
+double sliding_z(const std::vector<double>& p, double z, double v, double v_now, double step_s) {
+  const double from = steady_friction(p, v), to = steady_friction(p, v_now);
+  const double passed = 0.5 * (approach_per_s(p, v) + approach_per_s(p, v_now)) * step_s;
+  if (!(passed > 0)) return z;
+  const double left = std::exp(-passed);
+  return to - (to - from) * (1 - left) / passed + (z - from) * left;
+}
+
+std::vector<double> first_slack(const std::vector<double>& p) {
+  return {p[SlackIndex::play], p[SlackIndex::play]};
+}
+
+double slack_force(const std::vector<double>& p, const std::vector<double>& slack, double d) {
+  return std::clamp(d - slack[0], 0.0, p[SlackIndex::dy]) -
+         std::clamp(-d - slack[1], 0.0, p[SlackIndex::dy]);
+}
+
+void slacken(const std::vector<double>& p, std::vector<double>& slack, double d) {
+  slack[0] = std::max(slack[0], d - p[SlackIndex::dy]);
+  slack[1] = std::max(slack[1], -d - p[SlackIndex::dy]);
+}
 
 bool is_element_law(LawForm form) {
   return form <= LawForm::changing;

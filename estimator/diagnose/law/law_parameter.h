@@ -1,31 +1,96 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 namespace framewatch::estimator {
 
 /// One parameter of an effect that is being fitted, and how a fit may change it.
 struct LawParameter {
-  double value = 0;  ///< as the fit sees it: the logarithm where `logarithmic`
+  double value = 0;  ///< as the fit uses it: the logarithm if `logarithmic`
   bool logarithmic = false;
-  double step = 0;                    ///< unit of the fit's unknown, of the size of a useful change
+  double step = 0;  ///< unit of the fit's unknown, about the size of a significant change
   double low = -1e300, high = 1e300;  ///< bounds of `value`
-  double sigma = 0;                   ///< of a weak prior around `centre`; 0: no prior
-  double centre = 0;
+  double sigma = 0;                   ///< of a weak prior around `center`; 0: no prior
+  double center = 0;
   bool free = true;  ///< false: held at its value
 
-  /// The value as the law has it.
+  /// Returns the value in the law's own unit.
   double plain() const;
 };
 
-/// Whether a value has run into one of its bounds.
+/// Returns true if the value has reached one of its bounds.
 bool at_bound(const LawParameter& parameter);
 
-/// Free, without bounds. step: > 0 or taken as its size.
+/// Returns a free parameter without bounds. Uses |step| as its step.
 LawParameter linear_parameter(double value, double step);
-/// Free, fitted by its logarithm. value, low, high: > 0, as the law has them.
+/// Returns a free parameter that is fitted by its logarithm. value, low, high: > 0, in the law's
+/// unit.
 LawParameter logarithmic_parameter(double value, double low, double high);
 LawParameter bounded_parameter(double value, double step, double low, double high,
                                bool free = true);
-/// Held at its value.
+/// Returns a parameter held at this value.
 LawParameter fixed_parameter(double value);
+
+/// Families of laws that a diagnosis fits. A family covers several names of the catalog; the fitted
+/// values decide between them (name_of_fit). Families with `gap` in the name are mechanical
+/// clearances.
+enum class LawForm {
+  // restoring force over deformation and rate, at an element, between floors, or of whole frames
+  power,       ///< a sgn(d) |d/D|^p
+  saturating,  ///< a d0 tanh(d/d0)
+  hysteresis,  ///< kh z, Bouc-Wen with any sharpness and sign: HysteresisIndex
+  sliders,     ///< kh z, springs in series with sliders that yield one after the other: SliderIndex
+  asymptotic,  ///< kh z, a curve from every reversal toward yielding: AsymptoteIndex
+  pinched,     ///< hysteresis with a slip zone around zero force
+  slip_lock,   ///< hysteresis with a slip zone around zero deformation
+  slack,       ///< a brace that becomes slack by its plastic deformation: SlackIndex
+  friction,    ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: FrictionIndex
+  power_damping,  ///< a sgn(v) |v/V|^p
+  amplitude,      ///< a ((1 - s) sgn(d) |d/D|^p + s slip(d/D)) + b sgn(v) |v/V|^q: SlipCurve
+  gap_positive,   ///< contact at clearance g: max(kg (d - g) + cg v, 0) while d > g
+  gap_negative,   ///< contact toward negative deformation
+  gap_both,       ///< both; kg < 0 softens
+  changing,       ///< dk clip((t - t0)/T, 0, 1) d, t0 and T of each record
+  // at a node, linear
+  mass,           ///< dm at a crossing of frames
+  resonator,      ///< hidden mass on spring and dashpot
+  spring,         ///< between floors
+  damper,         ///< between floors
+  rocking,        ///< of the base
+  bending,        ///< of the frames
+  modal_damping,  ///< damping ratio of one mode, in addition to the dashpots
+  panels,         ///< of a floor that is declared rigid: G and damping
+  // external force at a node
+  harmonic,   ///< one frequency, amplitude and phase of each record
+  broadband,  ///< arbitrary force
+  // at an axis
+  misaligned,
+  swapped,  ///< two axes exchanged
+  clipped,  ///< the readings of the axis are not used
+};
+
+/// Indices of the parameters of LawForm::amplitude. `slip` is s above; its default is 0.
+struct AmplitudeIndex {
+  enum : std::size_t { elastic, exponent, damping, damping_exponent, slip };
+};
+
+/// Returns true if the law is a force over deformations, of one element or of every element of a
+/// place.
+bool is_element_law(LawForm form);
+/// Returns true if the law depends on past motion: hysteresis of any kind.
+bool is_hysteretic(LawForm form);
+/// Returns true if the law is a contact.
+bool is_contact(LawForm form);
+
+/// Parameters of an element law and its scales.
+struct LawValues {
+  LawForm form = LawForm::power;
+  /// In the order named at the form, amplitude first. For hysteresis see HysteresisIndex.
+  std::vector<double> p;
+  double deformation = 1.0;  ///< D, m
+  double rate = 1.0;         ///< V, m/s
+  double scale = 1.0;        ///< of the force: share of one element where a place has several
+};
 
 }  // namespace framewatch::estimator

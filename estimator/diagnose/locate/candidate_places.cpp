@@ -5,6 +5,8 @@
 #include <complex>
 #include <utility>
 
+#include "estimator/numeric/complex.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -14,20 +16,69 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
+/// Share of a direction's square below which it depends on the directions before it.
+constexpr double kIndependent = 1e-12;
+
+Complex product(const Eigen::RowVectorXcd& equations, const BinProducts::Direction& direction) {
+  Complex out = 0;
+  for (const BinProducts::Entry& e : direction)
+    out += equations[e.equation] * Complex(e.real, e.imaginary);
+  return out;
+}
+
+PlaceProducts products_of(const BinProducts& products, const std::vector<CandidatePlace>& places,
+                          bool with_columns) {
+  std::vector<BinProducts::Direction> directions;
+  for (const CandidatePlace& place : places) {
+    if (place.kind == CandidatePlace::Kind::axis)
+      directions.push_back(products.of_axis(place.axis));
+    for (Index c = 0; c < place.directions.cols(); ++c)
+      directions.push_back(products.of_force(place.directions.col(c)));
+  }
+  PlaceProducts out;
+  const auto count = static_cast<Index>(directions.size());
+  for (Index i = 0; i < count; ++i) {
+    const BinProducts::Direction& direction = directions[static_cast<std::size_t>(i)];
+    const Eigen::RowVectorXcd equations = products.under_metric(direction);
+    Eigen::RowVectorXcd columns;
+    if (with_columns) columns = products.with_columns(direction);
+    if (i == 0) {
+      out.equations = MatrixXcd::Zero(count, equations.size());
+      out.columns = MatrixXcd::Zero(count, columns.size());
+    }
+    out.equations.row(i) = equations;
+    out.columns.row(i) = columns;
+    const double before = product(equations, direction).real();
+    double square = before;
+    // equations.row(k) force: the product of the orthonormal direction k with this one.
+    for (Index k = 0; k < i; ++k) {
+      const Complex with = product(out.equations.row(k), direction);
+      out.equations.row(i) -= std::conj(with) * out.equations.row(k);
+      out.columns.row(i) -= std::conj(with) * out.columns.row(k);
+      square -= std::norm(with);
+    }
+    const double scale = square > kIndependent * before ? 1 / std::sqrt(square) : 0.0;
+    out.equations.row(i) *= scale;
+    out.columns.row(i) *= scale;
+  }
+  return out;
+}
+
 bool same_direction(const MatrixXd& a, const MatrixXd& b) {
   if (a.cols() != 1 || b.cols() != 1) return false;
   const double cosine = std::abs(a.col(0).dot(b.col(0))) / (a.norm() * b.norm());
   return cosine > 1 - 1e-9;
 }
 
-/// Whether the axes read most of a motion.
+/// Returns true if the axes read most of a motion.
 bool is_read(const Plant& plant, const VectorXd& motion) {
   constexpr double kMax = 0.5;
   return plant.unread.cols() == 0 ||
          (plant.read.transpose() * motion).squaredNorm() > kMax * motion.squaredNorm();
 }
 
-/// Whether an element shares its factors with others: its own force cannot be told from theirs.
+/// Returns true if an element shares its factors with others: its force cannot be separated from
+/// theirs.
 bool is_tied(const Plant& plant, int element) {
   return !plant.groups.empty() &&
          std::none_of(plant.groups.begin(), plant.groups.end(), [&](const TiedStories& group) {
@@ -42,7 +93,8 @@ void add_forces(std::vector<CandidatePlace>& out, CandidatePlace candidate_place
   out.push_back(std::move(candidate_place));
 }
 
-/// Forces of a rotation of the base, through the stiffnesses of the frames in one direction.
+/// Returns the forces of a rotation of the base, through the stiffnesses of the frames in one
+/// direction.
 MatrixXd moment_of(const Plant& plant, const Model& model, Direction direction) {
   const Structure& s = plant.structure;
   MatrixXd out = MatrixXd::Zero(plant.equations(), 1);
@@ -95,7 +147,8 @@ void add_elements(const Plant& plant, std::vector<CandidatePlace>& out) {
   }
 }
 
-/// Forces on every frame at every floor, and pairs of them between floors that are not neighbours.
+/// Adds forces on every frame at every floor, and pairs of them between floors that are not
+/// adjacent.
 void add_nodes_and_links(const Plant& plant, std::vector<CandidatePlace>& out) {
   const Structure& s = plant.structure;
   for (int story = 1; story <= s.stories; ++story)
@@ -162,7 +215,7 @@ void update_directions(const Plant& plant, const Model& model,
 
 std::vector<CandidatePlace> candidate_places_of(const Plant& plant, const Model& model) {
   std::vector<CandidatePlace> out;
-  // With one equation an error of a reading cannot be told from a force.
+  // With one equation, an error of a reading is indistinguishable from a force.
   if (plant.equations() > 1) out = axes_of(plant);
   if (plant.stiff_floors) add_floors(plant, out);
   add_elements(plant, out);
@@ -197,6 +250,15 @@ MatrixXcd candidate_basis(const Whitened& system, Index bin,
     out.col(c) /= norm > 1e-9 * before ? norm : 1e300;
   }
   return out;
+}
+
+PlaceProducts place_products(const BinProducts& products,
+                             const std::vector<CandidatePlace>& places) {
+  return products_of(products, places, true);
+}
+
+MatrixXcd place_equations(const BinProducts& products, const std::vector<CandidatePlace>& places) {
+  return products_of(products, places, false).equations;
 }
 
 }  // namespace framewatch::estimator

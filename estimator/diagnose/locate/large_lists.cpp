@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "estimator/diagnose/fit/bin_products.h"
-#include "estimator/diagnose/fit/sampled_bins.h"
-#include "estimator/diagnose/locate/place_products.h"
+#include "estimator/diagnose/fit/normal_equations.h"
+#include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/spectra/row_gram.h"
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"
@@ -20,12 +20,12 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kParts = 4;  ///< of the bins of a record, at work at once
-/// Lists up to which the products of their own rows are less work than those of all equations.
+constexpr int kParts = 4;  ///< of the bins of a record, processed in parallel
+/// Number of lists up to which products of their rows cost less than those of all equations.
 constexpr std::size_t kFewLists = 8;
 
-/// Adds real(C^H c) of a list's orthonormal directions; c: their products with the residual, the
-/// last of the columns C.
+/// Adds real(C^H c) of a list's orthonormal directions. c: their products with the residual, which
+/// is the last of the columns C.
 void add_last(const PlaceProducts& places, VectorXd& sum) {
   for (Index i = 0; i < places.columns.rows(); ++i) {
     const Complex last = places.columns(i, places.columns.cols() - 1);
@@ -34,7 +34,7 @@ void add_last(const PlaceProducts& places, VectorXd& sum) {
   }
 }
 
-/// The same of a bin whose products are not computed.
+/// Adds it for a bin whose products are not computed.
 void add_last(const Whitened& system, Index bin, const std::vector<CandidatePlace>& places,
               BinProducts& products, VectorXd& sum) {
   const MatrixXcd basis = candidate_basis(system, bin, places);
@@ -45,7 +45,7 @@ void add_last(const Whitened& system, Index bin, const std::vector<CandidatePlac
   }
 }
 
-/// The directions of a list's places; those of axes change from bin to bin.
+/// The directions of a list's places. Those of axes change from bin to bin.
 class Directions {
  public:
   explicit Directions(const std::vector<CandidatePlace>& places) {
@@ -63,7 +63,7 @@ class Directions {
 
   Index count() const { return static_cast<Index>(forces_.size()); }
 
-  /// Adds what add_last() adds, without orthonormal directions.
+  /// Adds the same sum as add_last(), without orthonormal directions.
   void add(const BinProducts& products, Eigen::Ref<VectorXd> sum) const {
     const Index count = this->count();
     MatrixXcd square(count, count);

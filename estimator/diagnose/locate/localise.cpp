@@ -7,9 +7,9 @@
 
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/normal_equations.h"
-#include "estimator/diagnose/locate/closer_look.h"
+#include "estimator/diagnose/locate/candidate_places.h"
+#include "estimator/diagnose/locate/conjugate_step.h"
 #include "estimator/diagnose/locate/large_lists.h"
-#include "estimator/diagnose/locate/place_products.h"
 #include "estimator/numeric/complex.h"
 namespace framewatch::estimator {
 namespace {
@@ -20,13 +20,15 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kConverged = 1e-3;  ///< change of the misfit, relative
-/// Lists that are processed in one pass over the bins: so many numbers of their squares, but a few.
+/// Lists processed in one pass over the bins: limited by the numbers in their squares, but at least
+/// a few.
 constexpr std::size_t kNumbersTogether = 8'000'000, kFewestTogether = 8, kMaxTogether = 64;
-/// Lists of a large building that are looked at closer than by their rough misfits.
-constexpr std::size_t kCloser = 64;
+/// Lists of a large building that get a step by conjugate gradients; the others have only a rough
+/// misfit.
+constexpr std::size_t kWithStep = 64;
 
-/// Which unknowns a step may change; masses, gains and clocks within tolerance only if
-/// `tolerances`.
+/// Returns the unknowns that a step may change. Includes masses, gains and clocks within tolerance
+/// only if `tolerances`.
 std::vector<Index> moving(const Linearised& at, bool tolerances) {
   using Kind = Unknown::Kind;
   std::vector<Index> out;
@@ -39,8 +41,8 @@ std::vector<Index> moving(const Linearised& at, bool tolerances) {
   return out;
 }
 
-/// For each list: the Gram matrix of the unknowns, the residual and the end terms with the whitened
-/// directions of the list's places projected out.
+/// Returns for each list the Gram matrix of the unknowns, the residual and the end terms, with the
+/// whitened directions of the list's places projected out.
 std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std::size_t record,
                               const std::vector<Index>& kept,
                               std::span<const std::vector<CandidatePlace>> lists) {
@@ -74,7 +76,7 @@ std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std:
   return out;
 }
 
-/// square_of() of every segment.
+/// Returns square_of() of every segment.
 std::vector<MatrixXd> squares_of(const Fitter& fitter, const Linearised& at,
                                  const std::vector<Index>& kept) {
   std::vector<MatrixXd> out(at.systems.size());
@@ -96,14 +98,15 @@ Index size_of(const std::vector<CandidatePlace>& candidate_places) {
   return out;
 }
 
-/// Expected misfit of all segments beside arbitrary signals at these places.
+/// Returns the expected misfit of all segments with arbitrary signals at these places.
 double expected_of(const Fitter& fitter, const Model& model,
                    const std::vector<CandidatePlace>& places) {
   return fitter.expected(model) * (1 - static_cast<double>(size_of(places)) /
                                            static_cast<double>(fitter.plant().read_equations()));
 }
 
-/// Normal equations with the places of each list projected out. squares: of each segment.
+/// Returns the normal equations with the places of each list projected out. squares: of each
+/// segment.
 std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Model& model,
                             const std::vector<Index>& kept, const std::vector<MatrixXd>& squares,
                             std::span<const std::vector<CandidatePlace>> lists) {
@@ -125,7 +128,7 @@ std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Mo
   return out;
 }
 
-/// Change of the unknowns `kept`.
+/// Returns the change of the unknowns `kept`.
 VectorXd step_of(const Reduced& reduced, const Linearised& at, const Model& model, double level,
                  const std::vector<Index>& kept) {
   std::vector<Unknown> unknowns;
@@ -146,8 +149,8 @@ bool explains_everything(const Fitter& fitter,
   return size_of(candidate_places) >= fitter.plant().read_equations();
 }
 
-/// Places with as many directions as there are equations explain any misfit: the localisation
-/// with nothing left.
+/// Returns the localization for places with as many directions as there are equations. They explain
+/// any misfit.
 Localisation everything(const Fitter& fitter, const Model& model,
                         const std::vector<CandidatePlace>& candidate_places,
                         const std::vector<Whitened>& systems) {
@@ -174,18 +177,18 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   const std::vector<MatrixXd> squares = squares_of(fitter, at, kept);
   const double prior = fitter.prior_cost(model);
   std::vector<Localisation> out(lists.size());
-  // closer: of a large building.
-  const auto store = [&](std::size_t i, const Reduced& reduced, const CloserLook* closer) {
+  // conjugate: only for a large building.
+  const auto store = [&](std::size_t i, const Reduced& reduced, const ConjugateStep* conjugate) {
     Localisation& one = out[i];
     one.candidate_places = lists[i];
     if (explains_everything(fitter, one.candidate_places)) {
       one = everything(fitter, model, one.candidate_places, at.systems);
       return;
     }
-    const VectorXd step = closer ? closer->step : step_of(reduced, at, model, 1.0, kept);
+    const VectorXd step = conjugate ? conjugate->step : step_of(reduced, at, model, 1.0, kept);
     if (!step.allFinite()) return;
-    const double left = closer
-                            ? closer->left
+    const double left = conjugate
+                            ? conjugate->left
                             : reduced.equations.misfit + step.dot(reduced.equations.normal * step) +
                                   2 * step.dot(reduced.equations.gradient);
     one.misfit = left + prior;
@@ -197,7 +200,7 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   };
   std::vector<std::size_t> chosen(lists.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  if (fitter.plant().is_large() && lists.size() > kCloser) {
+  if (fitter.plant().is_large() && lists.size() > kWithStep) {
     const std::vector<double> left = rough_misfits(at, kept, squares, lists, parallel);
     for (std::size_t i = 0; i < lists.size(); ++i) {
       out[i].candidate_places = lists[i];
@@ -206,12 +209,12 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     }
     std::stable_sort(chosen.begin(), chosen.end(),
                      [&](std::size_t a, std::size_t b) { return out[a].ratio < out[b].ratio; });
-    chosen.resize(kCloser);
+    chosen.resize(kWithStep);
   }
   const auto numbers = static_cast<std::size_t>(squares.empty() ? 1 : squares.front().size());
   const bool large = fitter.plant().is_large();
   const std::size_t at_once =
-      large ? kCloser / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMaxTogether);
+      large ? kWithStep / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMaxTogether);
   const std::size_t groups = (chosen.size() + at_once - 1) / at_once;
   run_all(parallel, static_cast<int>(groups), [&](int group) {
     const std::size_t first = static_cast<std::size_t>(group) * at_once;
@@ -219,16 +222,16 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     for (std::size_t i = first; i < std::min(first + at_once, chosen.size()); ++i)
       together.push_back(lists[chosen[i]]);
     const std::vector<Reduced> reduced = reduce(fitter, at, model, kept, squares, together);
-    std::vector<CloserLook> closer;
+    std::vector<ConjugateStep> conjugate;
     if (large) {
       std::vector<NormalEquations> equations;
       for (const Reduced& one : reduced) equations.push_back(one.equations);
-      closer = closer_looks(at, kept, together, equations);
+      conjugate = conjugate_steps(at, kept, together, equations);
     }
     for (std::size_t i = 0; i < reduced.size(); ++i)
-      store(chosen[first + i], reduced[i], large ? &closer[i] : nullptr);
+      store(chosen[first + i], reduced[i], large ? &conjugate[i] : nullptr);
   });
-  if (chosen.size() < lists.size()) {  // what was not looked at closer comes after all that was
+  if (chosen.size() < lists.size()) {  // lists with only a rough misfit come after all others
     double last = 0;
     for (const std::size_t i : chosen)
       if (out[i].ratio < 1e299) last = std::max(last, out[i].ratio);
@@ -249,7 +252,7 @@ Localisation localise(const Fitter& fitter, const Model& start,
   std::vector<MatrixXcd> driving = motion;
   driving.resize(fitter.segments().size());
   double before = 1e300, weighted = 0;
-  std::vector<Whitened> weights;  // of a large building: until the misfit has halved
+  std::vector<Whitened> weights;  // of a large building, until the misfit has halved
   bool own_weights = true;        // of the best misfit
   for (int step = 0; step <= steps; ++step) {
     const bool renewed = weights.empty() || step == steps || before < kNewWeights * weighted ||

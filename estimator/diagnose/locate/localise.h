@@ -11,30 +11,32 @@
 
 namespace framewatch::estimator {
 
-/// A model fitted with arbitrary signals at some places: the misfit that is left.
+/// A model fitted with arbitrary signals at some places, and its remaining misfit.
 struct Localisation {
   std::vector<CandidatePlace> candidate_places;
   double misfit = 1e300;  ///< of all segments, with the prior
   double ratio = 1e300;   ///< misfit over its expectation; 1: the rest of the building fits
-  std::vector<double> record_ratio;  ///< the same of each segment
+  std::vector<double> record_ratio;  ///< ratio of each segment
   bool converged = false;            ///< further steps would change nothing
   Model model;
   std::vector<Eigen::MatrixXcd> motion;
 };
 
-/// One step of the fit from `at` with arbitrary signals at the places of each list. Needs no law:
-/// whatever acts at one place, the rest of the building stays linear.
+/// Takes one step of the fit from `at` with arbitrary signals at the places of each list. Needs no
+/// law: whatever acts at a place, the rest of the building stays linear.
 std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& at,
                                         const Model& model,
                                         const std::vector<std::vector<CandidatePlace>>& lists,
                                         const Parallel& parallel = {});
 
-/// The same for one list of places, iterated until it converges, at most `steps` times.
+/// Fits with arbitrary signals at the places of one list. Iterates until it converges, at most
+/// `steps` times.
 Localisation localise(const Fitter& fitter, const Model& start,
                       const std::vector<Eigen::MatrixXcd>& motion,
                       const std::vector<CandidatePlace>& candidate_places, int steps);
 
-/// The same of one element, beside a fit; empty where the place is none.
+/// Localizes one element, starting from the fit `now`. Returns nullopt if `element` is not an
+/// element of the plant.
 std::optional<Localisation> localise_element(const Fitter& fitter, const FitResult& now,
                                              const EffectPlace& element);
 

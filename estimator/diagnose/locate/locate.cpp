@@ -2,16 +2,80 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <utility>
+
+#include "estimator/diagnose/fit/noise_corner.h"
 
 namespace framewatch::estimator {
 namespace {
 
-constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
-constexpr std::size_t kSingle = 3;     ///< of places of one direction, iterated too
-constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::VectorXcd;
+
+constexpr int kTimesBeside = 3, kStepsBeside = 6, kTimesCells = 10;
+constexpr double kSameCorner = 0.15;  ///< relative difference
+constexpr double kNoiseBeside = 2;    ///< spread_of() of noise
+constexpr double kOutlier = 3;        ///< standard deviations of a cell of noise
+constexpr double kMaxCells = 0.6;     ///< smallest share of cells that are noise
+
+/// Returns the residual with arbitrary signals at a place, in cells.
+std::vector<NoiseCell> cells_at(const Fitter& fitter, const Localisation& place) {
+  std::vector<NoiseCell> out;
+  const std::vector<Whitened> systems =
+      fitter.systems(place.model, place.motion, Forcing::measured);
+  for (std::size_t r = 0; r < systems.size(); ++r) {
+    const Whitened& system = systems[r];
+    const RecordSegment& segment = fitter.segments()[r];
+    const Index n = system.operation.equations();
+    for (Index from = 0; from + kBinsOfCell <= system.bins(); from += kBinsOfCell) {
+      double power = 0, numbers = 0;
+      for (Index b = from; b < from + kBinsOfCell; ++b) {
+        VectorXcd rest(n);
+        rest.real() = system.rest.segment(2 * n * b, n);
+        rest.imag() = system.rest.segment(2 * n * b + n, n);
+        const MatrixXcd basis = candidate_basis(system, b, place.candidate_places);
+        power += rest.squaredNorm() - (basis.adjoint() * rest).squaredNorm();
+        numbers += static_cast<double>(n - basis.cols());
+      }
+      const double hz = segment.w[from + kBinsOfCell / 2] / (2 * M_PI);
+      out.push_back({hz, segment.corner_hz, power / numbers, numbers});
+    }
+  }
+  return out;
+}
+
+/// Returns the corner frequency of most of the cells. Removes the other cells from `cells`.
+double corner_of_most(std::vector<NoiseCell>& cells) {
+  const std::vector<NoiseCell> all = cells;
+  double corner_hz = likeliest_corner_hz(cells);
+  for (int i = 0; i < kTimesCells; ++i) {
+    const auto excess = [&](const NoiseCell& c) {
+      return (c.level / c.expected(corner_hz) - 1) * std::sqrt(c.numbers);
+    };
+    std::vector<double> sorted;
+    for (const NoiseCell& c : all) sorted.push_back(excess(c));
+    std::sort(sorted.begin(), sorted.end());
+    const auto most = static_cast<std::size_t>(kMaxCells * static_cast<double>(sorted.size()));
+    const double limit = std::max(kOutlier, sorted[most]);
+    cells.clear();
+    std::copy_if(all.begin(), all.end(), std::back_inserter(cells),
+                 [&](const NoiseCell& c) { return excess(c) <= limit; });
+    const double next_hz = likeliest_corner_hz(cells);
+    if (next_hz == corner_hz) break;
+    corner_hz = next_hz;
+  }
+  return corner_hz;
+}
+
+constexpr std::size_t kPlaces = 5;  ///< always iterated, of any kind
+constexpr std::size_t kSingle = 3;  ///< further places with one direction that are iterated
+constexpr std::size_t kOfOneKind =
+    2;  ///< further places of the building or a floor that are iterated
 constexpr std::size_t kContenders = 3, kMaxContenders = 5;
 constexpr std::size_t kMaxAsLikely = 16;
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
@@ -20,26 +84,27 @@ constexpr std::size_t kMaxOfPairs = 150;  ///< places of a large building, best 
 constexpr int kSteps = 8, kPairSteps = 6;
 constexpr int kTrialSteps = 3;     ///< before the ratios are compared
 constexpr double kMinNoise = 0.5;  ///< ratio that noise alone may have
-constexpr double kHardly = 0.5;    ///< of what chance may leave
-constexpr double kWideMargin = 2;  ///< times the margin: places above it then are not iterated on
+constexpr double kHardly = 0.5;    ///< of the chance level
+constexpr double kWideMargin =
+    2;  ///< times the margin: places above it after the first steps are dropped
 
 void sort_by_ratio(std::vector<Localisation>& list) {
   std::stable_sort(list.begin(), list.end(),
                    [](const Localisation& a, const Localisation& b) { return a.ratio < b.ratio; });
 }
 
-/// Ratio above which a place is too far from the best to be tried.
+/// Returns the ratio above which a place is too far from the best to be tried.
 double margin_of(const Localisation& best) {
   return 1 + 2 * std::max(best.ratio - 1, 0.05) + 0.1;
 }
 
-/// The same for places that have not converged.
+/// Returns that ratio for places that have not converged.
 double wide_margin_of(const Localisation& best) {
   return 1 + kWideMargin * (margin_of(best) - 1);
 }
 
-/// Iterates localisations from their first step. Those whose ratio after a few steps exceeds the
-/// limit, a function of the best, are not iterated on.
+/// Iterates localizations from their first step. Stops those whose ratio after a few steps exceeds
+/// limit_of(best).
 std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
                                    const std::vector<const Localisation*>& starts, int steps,
                                    const std::function<double(const Localisation&)>& limit_of,
@@ -75,7 +140,8 @@ std::vector<CandidatePlace> of_one_direction(const std::vector<Localisation>& on
   return out;
 }
 
-/// Localisations of all lists after one step, best first; empty when the model cannot be computed.
+/// Returns localizations of all lists after one step, best first; empty if the model cannot be
+/// computed.
 std::vector<Localisation> one_step(const Fitter& fitter, const FitResult& now,
                                    const std::vector<std::vector<CandidatePlace>>& lists,
                                    const Parallel& parallel) {
@@ -87,7 +153,7 @@ std::vector<Localisation> one_step(const Fitter& fitter, const FitResult& now,
   return out;
 }
 
-/// The best lists after one step, iterated. Best first.
+/// Returns the best lists after one step, iterated, best first.
 std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
                                      const std::vector<std::vector<CandidatePlace>>& lists,
                                      const Parallel& parallel) {
@@ -97,7 +163,8 @@ std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
   return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
 }
 
-/// Whether far less than chance is left for the likeliest place: near the noise one step tells it.
+/// Returns true if the likeliest place explains far less than chance. Near the noise, one step
+/// suffices to know.
 bool leaves_nothing(const Fitter& fitter, const FitResult& now,
                     const std::vector<Localisation>& once) {
   if (once.empty()) return true;
@@ -127,7 +194,7 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
   const bool nothing = leaves_nothing(fitter, now, out.once);
   for (std::size_t i = 0; i < out.once.size(); ++i) {
     const CandidatePlace& place = out.once[i].candidate_places.front();
-    // Of a large building, both directions of its masses come before either of them.
+    // In a large building, both directions of a mass rank above either direction alone.
     const bool alone = fitter.plant().is_large() && place.size() == 1 && single < kSingle;
     const bool more = (is_global(place) && global < kOfOneKind) || alone;
     if (i >= kPlaces && !more) continue;
@@ -146,7 +213,7 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
   std::vector<CandidatePlace> all = of_one_direction(once);
   if (fitter.plant().is_large() && all.size() > kMaxOfPairs) all.resize(kMaxOfPairs);
   std::vector<std::vector<CandidatePlace>> lists;
-  // Two exchanged axes stand out among the axes, each for itself.
+  // Two exchanged axes rank high among the axes, each by itself.
   std::vector<char> leading_axis(all.size(), 0);
   std::size_t axes = 0;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -192,8 +259,8 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   std::vector<Localisation> out;
   std::map<CandidatePlace::Kind, int> of_kind;
   if (places.empty()) return out;
-  // Both directions of a mass take more of what nothing explains than one of them, in which the
-  // cause may be.
+  // Two directions of a mass explain more of an unexplained misfit than the one direction where the
+  // cause may act.
   const auto single = std::find_if(places.begin(), places.end(), [](const Localisation& place) {
     return place.candidate_places.front().size() == 1;
   });
@@ -202,7 +269,7 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   for (const Localisation& place : places) {
     const bool alone = apart && place.candidate_places.front().size() == 1;
     const double limit = margin_of(alone ? *single : places.front());
-    // Bending frames are located by a moment at the base, which explains only a part of them.
+    // Bending frames are located by a moment at the base, which explains only part of them.
     const bool moment = place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
     if (place.ratio > (moment ? wide : limit)) continue;
     const bool another_kind = of_kind[place.candidate_places.front().kind]++ == 0;
@@ -210,6 +277,25 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
     if (worth || moment) out.push_back(place);
   }
   return out;
+}
+
+bool set_noise_corner_at(const Fitter& fitter, std::vector<RecordSegment>& segments,
+                         const Localisation& place) {
+  const double before_hz = segments.front().corner_hz;
+  Localisation now = place;
+  double spread = 0;
+  for (int i = 0; i <= kTimesBeside; ++i) {
+    std::vector<NoiseCell> cells = cells_at(fitter, now);
+    if (cells.empty() || (i == 0 && spread_of(cells, 0) < kNoiseBeside)) break;
+    const double corner_hz = corner_of_most(cells);
+    spread = spread_of(cells, corner_hz);
+    if (i == kTimesBeside || corner_hz == 0) break;
+    if (std::abs(corner_hz - segments.front().corner_hz) < kSameCorner * corner_hz) break;
+    set_corner(corner_hz, segments);
+    now = localise(fitter, now.model, now.motion, now.candidate_places, kStepsBeside);
+  }
+  if (spread > kNoiseBeside) set_corner(before_hz, segments);
+  return segments.front().corner_hz != before_hz;
 }
 
 }  // namespace framewatch::estimator

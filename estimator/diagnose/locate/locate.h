@@ -8,7 +8,7 @@ namespace framewatch::estimator {
 
 constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
 
-/// Increase of Localisation::ratio above 1 that is more than chance.
+/// Returns the increase of Localisation::ratio above 1 that is more than chance.
 double chance_of(const Fitter& fitter, const Model& model);
 
 /// Places where arbitrary signals would make a model fit.
@@ -20,23 +20,30 @@ struct Located {
 /// Tries every place of the plant.
 Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel);
 
-/// Further places other than elements that are as good as the best within chance; their effects are
-/// quick to fit. Best first.
+/// Returns further places, other than elements, that are as good as the best within chance, best
+/// first. Their effects are quick to fit.
 std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
                                     const Located& located, const Parallel& parallel);
 
-/// Pairs of places: the best single ones with every other, and every two axes. Best first.
+/// Returns pairs of places, best first: the best single places with every other, and every two
+/// axes.
 std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
                                        const std::vector<Localisation>& once,
                                        const Parallel& parallel);
 
-/// Pairs of a place with `known`: effects beside a law whose force the noisy measured motion does
-/// not determine well enough. Best first.
+/// Returns pairs of each place with `known`, best first. Finds effects beside a law whose force the
+/// noisy measured motion does not determine well enough.
 std::vector<Localisation> locate_beside(const Fitter& fitter, const FitResult& now,
                                         const std::vector<Localisation>& once,
                                         const CandidatePlace& known, const Parallel& parallel);
 
-/// The places whose laws are fitted: near the best, few of each kind.
+/// Returns the places whose laws are fitted: those near the best, a few of each kind.
 std::vector<Localisation> contenders(const std::vector<Localisation>& places);
+
+/// Estimates the corner frequency of the noise (RecordSegment::corner_hz) from the residual with
+/// arbitrary signals at a place. Uses most of the cells; in the others some effect is still
+/// missing. Sets it in `segments`, which are those of the fitter. Returns true if it changed.
+bool set_noise_corner_at(const Fitter& fitter, std::vector<RecordSegment>& segments,
+                         const Localisation& place);
 
 }  // namespace framewatch::estimator

@@ -13,22 +13,22 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Of the band's lower end in one mean: a Hann taper has its zeros from there on.
+/// Periods of the band's lower end in one mean: the zeros of a Hann taper start there.
 constexpr double kPeriods = 2;
 constexpr Index kHops = 4;  ///< in one mean
 constexpr Index kMinMeans = 23;
-/// Of the band's lower end in a record: in fewer, slow motion of the building is like a drift,
-/// unless that is large.
+/// Periods of the band's lower end in a record. With fewer than kMinPeriods, slow motion of the
+/// building resembles a small drift.
 constexpr double kMinPeriods = 26, kFewPeriods = 6;
 constexpr Index kFewMeans = 9;
 constexpr double kMinShare = 0.02, kLargeShare = 0.04;  ///< of an axis' rms
 constexpr double kBeyondOthers = 5, kFarBeyond = 15;    ///< times the median of all axes
 constexpr double kSignificance = 30;                    ///< F of two parameters
-constexpr double kOfFew = 3;         ///< the same where few means are far beyond the others'
+constexpr double kOfFew = 3;         ///< F if there are few means, far beyond those of the others
 constexpr double kOnsetStep = 0.05;  ///< of the segment
 constexpr double kLatestOnset = 0.85;
 constexpr Index kMaxCosines = 20;
-constexpr double kFarBetter = 4;  ///< times less is left by a curve than by a ramp
+constexpr double kFarBetter = 4;  ///< factor by which a curve must leave less than a ramp
 
 /// Tapered means over overlapping spans, one column per axis, and the middle of each span, s. The
 /// taper suppresses the building's motion.
@@ -58,10 +58,10 @@ Means means_of(const RecordSegment& s) {
 struct Fit {
   Ramp ramp;
   double significance = 0;
-  double rest = 0;  ///< sum of squares that the ramp leaves of the means
+  double rest = 0;  ///< sum of squares of the means that the ramp leaves
 };
 
-/// Least squares over the onset, of means of one axis.
+/// Fits a ramp to the means of one axis by least squares, over a grid of onsets.
 Fit fit_of(const Means& means, Index axis, double seconds) {
   const Index count = means.time.size();
   const VectorXd y = means.value.col(axis);
@@ -78,7 +78,7 @@ Fit fit_of(const Means& means, Index axis, double seconds) {
     least = rest;
     best.ramp = {
         c[1], from, std::sqrt(std::max(total - rest, 0.0) / static_cast<double>(count)), {}};
-    // Means overlap: independent ones are fewer.
+    // Means overlap, so fewer are independent.
     best.significance =
         0.5 * (total - rest) / kHops / std::max(rest / static_cast<double>(count - 3), 1e-300);
   }
@@ -93,14 +93,14 @@ MatrixXd cosines(const VectorXd& time, double seconds, Index count) {
   return out;
 }
 
-/// What a mean keeps of a cosine: response of a Hann taper. cycles: of the cosine within it,
-/// below 1.
+/// Returns the share of a cosine that a mean keeps: the response of a Hann taper. cycles: of the
+/// cosine within it, below 1.
 double kept(double cycles) {
   if (cycles == 0) return 1;
   return std::sin(M_PI * cycles) / (M_PI * cycles) / (1 - cycles * cycles);
 }
 
-/// The slow curve of an axis where that follows its means far better than a ramp, with its rms.
+/// Replaces the ramp by a slow curve, with its rms, if the curve follows the means far better.
 void follow(const RecordSegment& s, const Means& means, Index axis, bool few, Fit& fit) {
   const double seconds = s.seconds();
   const double span_s = kHops * (means.time[1] - means.time[0]);
@@ -120,13 +120,13 @@ void follow(const RecordSegment& s, const Means& means, Index axis, bool few, Fi
   VectorXd time(s.accel.rows());
   for (Index i = 0; i < time.size(); ++i) time[i] = static_cast<double>(i) / s.rate_hz;
   VectorXd slow = c;
-  slow[0] = 0;  // the mean is no drift
+  slow[0] = 0;  // the mean is not a drift
   fit.ramp.curve = cosines(time, seconds, count) * slow;
   fit.ramp.rms = std::sqrt(fit.ramp.curve.squaredNorm() / static_cast<double>(time.size()));
   fit.significance = significance;
 }
 
-/// The means of an axis without what its direction has in common: slow motion of the ground.
+/// Subtracts from the means of each axis the median of its direction: slow motion of the ground.
 void remove_common(const Plant& plant, Means& means) {
   MatrixXd own = means.value;
   for (Index a = 0; a < plant.axis_count(); ++a) {

@@ -8,8 +8,8 @@
 
 namespace framewatch::estimator {
 
-/// Drift of an axis' bias: slope * max(t - from_s, 0) is added to the reading, or another slow
-/// curve, which the ramp comes nearest to.
+/// Drift of an axis' bias. It adds slope * max(t - from_s, 0) to the reading, or another slow curve
+/// that this ramp approximates.
 struct Ramp {
   double slope = 0;   ///< m/s^2 per s
   double from_s = 0;  ///< s
@@ -18,12 +18,12 @@ struct Ramp {
   Eigen::VectorXd curve = {};
 };
 
-/// The drift of an axis; empty when there is none. An axis has one if its mean reading drifts far
-/// more than those of the other axes, which share the building's motion. A curve is one of cosines
-/// slower than the band, where it follows the mean reading far better than a ramp.
+/// Returns the drift of an axis, or nullopt. An axis drifts if its mean reading drifts far more
+/// than those of the other axes, which share the building's motion. The drift is a curve of cosines
+/// slower than the band if the curve follows the mean reading far better than a ramp.
 std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& segment, Eigen::Index axis);
 
-/// The segment with the ramp subtracted from one axis.
+/// Returns the segment with the ramp subtracted from one axis.
 RecordSegment without_ramp(const RecordSegment& segment, Eigen::Index axis, const Ramp& ramp);
 
 }  // namespace framewatch::estimator

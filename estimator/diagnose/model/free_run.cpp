@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
-#include "estimator/diagnose/model/initial_motion.h"
+#include <Eigen/Core>
+
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/modal_system.h"
+#include "estimator/diagnose/model/model.h"
 #include "estimator/diagnose/model/run_system.h"
+#include "estimator/diagnose/spectra/fourier.h"
+#include "estimator/diagnose/spectra/record_segment.h"
+#include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -15,21 +21,92 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
+/// Motion of the coordinates relative to the ground at one sample of a segment's lead.
+struct InitialMotion {
+  Eigen::Index sample = 0;                 ///< of the lead
+  Eigen::VectorXd displacement, velocity;  ///< m, m/s
+};
+
+constexpr Index kFewestSamples = 64;
+constexpr double kTaper = 0.05;    ///< of the record, at either end
+constexpr Index kFirstShare = 20;  ///< the lead begins with its first 1/20
+constexpr double kMoving = 0.1;
+constexpr Index kOfLead = 4;  ///< the initial instant lies a quarter into the lead
+
+double taper(Index i, Index size) {
+  const double edge = kTaper * static_cast<double>(size);
+  const double at = static_cast<double>(std::min(i, size - 1 - i)) / edge;
+  return at < 1 ? 0.5 - 0.5 * std::cos(M_PI * at) : 1.0;
+}
+
+/// Returns true if the floors move at the start: compares the rms of the readings there with that
+/// of the whole lead.
+bool begins_in_motion(const Plant& plant, const RecordSegment& segment) {
+  const Index first = std::max<Index>(1, segment.lead.rows() / kFirstShare);
+  double begin = 0, all = 0;
+  for (Index a = 0; a < plant.axis_count(); ++a) {
+    if (plant.is_input(a)) continue;
+    begin += segment.lead.col(a).head(first).squaredNorm() / static_cast<double>(first);
+    all += segment.lead.col(a).squaredNorm() / static_cast<double>(segment.lead.rows());
+  }
+  return begin > kMoving * kMoving * all;
+}
+
+/// Returns the measured motion a quarter into the lead, so that a record that begins in motion need
+/// not be simulated from rest. Integrates the readings within the segment's band. Returns nullopt
+/// if there is no lead, or if the lead begins at rest: a run from rest is then exact.
+std::optional<InitialMotion> initial_motion(const Plant& plant, const Model& model,
+                                            const RecordSegment& segment) {
+  const Index lead = segment.lead.rows();
+  const Index size = smooth_size(lead + segment.accel.rows());
+  if (lead == 0 || size < kFewestSamples || segment.w.size() == 0) return std::nullopt;
+  if (!begins_in_motion(plant, segment)) return std::nullopt;
+  InitialMotion out;
+  out.sample = std::max(lead / kOfLead, static_cast<Index>(kTaper * static_cast<double>(size)) + 1);
+  if (out.sample >= lead) return std::nullopt;
+  VectorXd place = VectorXd::Zero(plant.building.axes()), rate = place;
+  for (Index a = 0; a < plant.axis_count(); ++a) {
+    VectorXd reading(size);
+    for (Index i = 0; i < size; ++i)
+      reading[i] = taper(i, size) * (i < lead ? segment.lead(i, a) : segment.accel(i - lead, a)) /
+                   (1 + model.gain[a]);
+    VectorXcd bins = forward_fourier(reading), rates = bins;
+    for (Index k = 0; k < bins.size(); ++k) {
+      const double w =
+          2 * M_PI * segment.rate_hz * static_cast<double>(k) / static_cast<double>(size);
+      const bool inside = w >= segment.w[0] && w <= segment.w.tail(1)[0];
+      bins[k] = !inside ? 0 : segment.is_displaced(a) ? bins[k] : Complex(-bins[k] / (w * w));
+      rates[k] = kJ * w * bins[k];
+    }
+    place[a] = inverse_fourier(bins, size)[out.sample];
+    rate[a] = inverse_fourier(rates, size)[out.sample];
+  }
+  const LeastSquares coordinates(plant.constraint);
+  const auto relative = [&](const VectorXd& of_axes) {
+    return VectorXd(plant.motion * of_axes - coordinates.solve(VectorXd(plant.ground * of_axes)));
+  };
+  out.displacement = relative(place);
+  out.velocity = relative(rate);
+  return out;
+}
+
 constexpr double kStepsPerPeriod = 30;
-constexpr int kFewestSteps = 2, kMaxSteps = 12;  ///< a sample
-constexpr int kContactSteps = 4;     ///< in place of one: contacts come and go within it
-constexpr int kPrescribedSteps = 6;  ///< a sample: corners of laws lie between samples
+constexpr int kFewestSteps = 2, kMaxSteps = 12;  ///< per sample
+constexpr int kContactSteps =
+    4;  ///< for each step without contacts: contacts open and close within a step
+constexpr int kPrescribedSteps = 6;  ///< per sample: corners of laws lie between samples
 constexpr double kDiverged_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
 constexpr int kGrows = 60, kIllinois = 60;
 constexpr double kRootPart = 1e-9, kMinForce_n = 1e-12;
-/// Of the slopes that are remembered: steps by steeper ones are too short where a law becomes soft.
+/// Bounds of stored slopes: steps by steeper slopes are too short if a law softens.
 constexpr double kSteepest = -2, kFlattest = -0.5;
 
-/// Root of `miss` near `start`. slope: of `miss` about there, set to what it was found to be. Where
-/// the law does not soften it falls by at least one per unit.
+/// Finds the root of `miss` near `start`. slope: of `miss` near the root; updated. `miss` falls by
+/// at least one per unit unless the law softens.
 template <typename Miss>
 double root_near(const Miss& miss, double start, double& slope) {
   double before = start, value_before = miss(before);
@@ -68,7 +145,7 @@ std::vector<Index> driving_axes(const Plant& plant) {
   return out;
 }
 
-/// The forces of a model's effects during a run: those of harmonic forces are known beforehand,
+/// The forces of a model's effects during a run. Those of harmonic forces are known in advance;
 /// those of element laws and springs depend on the motion at the end of the step.
 class RunForces {
  public:
@@ -103,7 +180,7 @@ class RunForces {
 
   std::size_t laws() const { return laws_.size(); }
 
-  /// Harmonic forces at time t.
+  /// Sets the harmonic forces at time t.
   void set_harmonics(double t, VectorXd& inputs) const {
     for (const auto& [e, at] : harmonics_) {
       const double phase = 2 * M_PI * e->parameters[0].plain() * t;
@@ -113,7 +190,7 @@ class RunForces {
     }
   }
 
-  /// Forces of the laws at the end of a step that `system` has predicted.
+  /// Solves for the forces of the laws at the end of a step that `system` has predicted.
   void solve_laws(const ModalSystem& system, double t, VectorXd& inputs) {
     const int sweeps = laws_.size() > 1 ? kSweeps : 1;
     for (RunLaw& law : laws_) law.before = std::exchange(law.force, 2 * law.force - law.before);
@@ -129,7 +206,7 @@ class RunForces {
     }
   }
 
-  /// Ends the step. false: the motion has diverged.
+  /// Ends the step. Returns false if the motion has diverged.
   bool accept(std::size_t law, double t) {
     laws_[law].motion.accept(at_step_[law].d, at_step_[law].v, t);
     return std::abs(at_step_[law].d) < kDiverged_m;
@@ -146,8 +223,8 @@ class RunForces {
     LawMotion motion;
     ModalSystem::Observer seen;
     Index input;
-    double force = 0, before = 0;  ///< at the end of this step and of the one before
-    double slope = -1;             ///< of what solve() brings to zero
+    double force = 0, before = 0;  ///< at the end of this step and of the previous one
+    double slope = -1;             ///< of the miss in solve()
   };
   struct RunSpring {
     double stiffness;
@@ -158,7 +235,7 @@ class RunForces {
     double d, v;
   };
 
-  /// Force of one law, the forces of the others held.
+  /// Solves for the force of one law with the forces of the others held.
   void solve(const ModalSystem& system, std::size_t l, double t) {
     RunLaw& law = laws_[l];
     double d = system.displacement(law.seen), v = system.velocity(law.seen);
@@ -169,7 +246,7 @@ class RunForces {
     }
     const double gd = law.seen.displacement_gain[law.input];
     const double gv = law.seen.velocity_gain[law.input];
-    // f = F(d + gd f, v + gv f): gd, gv < 0, F rises, so the root is bracketed.
+    // f = F(d + gd f, v + gv f): gd, gv < 0 and F rises, so the root is bracketed.
     const auto miss = [&](double f) { return law.motion.force(d + gd * f, v + gv * f, t) - f; };
     law.force = root_near(miss, law.force, law.slope);
     at_step_[l] = {d + gd * law.force, v + gv * law.force};

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/model/model.h"
-#include "estimator/diagnose/model/run_cache.h"
+#include "estimator/diagnose/model/run_system.h"
 #include "estimator/diagnose/spectra/record_segment.h"
 
 namespace framewatch::estimator {
@@ -21,24 +21,25 @@ struct FreeRun {
   std::vector<LawTrack> tracks;  ///< of the model's element laws, in their order
 };
 
-/// A change of an element's stiffness, N/m, so small that its force at the end of a step moves
-/// nothing within it.
+/// A change of an element's stiffness, N/m. It must be so small that its force at the end of a step
+/// causes no motion within the step.
 struct SmallSpring {
   Eigen::Index element;
   double stiffness;
 };
 
-/// Simulates the model under the measured motion of the base alone, from rest, or as measured
-/// within the segment's lead (initial_motion). The linear part is integrated exactly in its complex
-/// modes; the forces of the laws at the end of each step are solved implicitly. record: index of
-/// the segment's record. cache: of one thread; null: none.
+/// Simulates the model under the measured motion of the base alone. Starts from rest, or from the
+/// motion measured in the segment's lead. Integrates the linear part exactly in its complex modes
+/// and solves for the forces of the laws implicitly at the end of each step. `record`: index of the
+/// segment's record. `ratio`: steps per sample. `cache`: not shared between threads; null: no
+/// cache.
 FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& segment,
                  std::size_t record, int ratio, RunCache* cache = nullptr,
                  const std::vector<SmallSpring>& springs = {});
 
-/// Steps per sample that resolve the model's highest mode.
+/// Returns the steps per sample that resolve the model's highest mode.
 int steps_per_sample(const Plant& plant, double rate_hz);
-/// Those of a model: finer where it has contacts.
+/// Returns the steps per sample of a model: more than `ratio` if it has contacts.
 int steps_of(const Model& model, int ratio);
 
 }  // namespace framewatch::estimator

@@ -9,18 +9,18 @@
 
 namespace framewatch::estimator {
 
-/// Where a law meets the building: one deformation, and the force against it. A law of a whole
-/// frame or building has one for every element of it.
+/// Connection of a law to the building: one deformation, and the force against it. A law of a whole
+/// frame or building has a port at every element.
 struct LawPort {
-  Eigen::VectorXd act;       ///< force on the equations per newton; deformation of displacements
-  Eigen::RowVectorXd sense;  ///< over the axes: their motion to the deformation's
-  int element = -1;          ///< in theta, where it is an element
+  Eigen::VectorXd act;       ///< force on the equations per newton; deformation per displacement
+  Eigen::RowVectorXd sense;  ///< over the axes: deformation per motion of the axes
+  int element = -1;          ///< in theta; -1: not an element
   double scale = 1;          ///< of the law's force here (LawValues::scale)
 };
 
-/// The ports of an element law. Between floors (node_pair): of the upper relative to the lower one,
-/// to_story 0 the ground. Of several elements the force is in proportion to their stiffness in
-/// `model`, one to their mean.
+/// Returns the ports of an element law. A law between floors (node_pair) acts on the upper relative
+/// to the lower floor; to_story 0 is the ground. For several elements, the force is proportional to
+/// their stiffness in `model`, with mean scale 1.
 std::vector<LawPort> law_ports(const Plant& plant, const Model& model, const ModelEffect& effect);
 
 /// A port of a model's element laws, in the order of the effects.
@@ -31,7 +31,7 @@ struct ActiveLaw {
 
 std::vector<ActiveLaw> active_laws(const Plant& plant, const Model& model);
 
-/// The law's values at a port in one record.
+/// Returns the law's values at a port in one record.
 LawValues law_at(const Model& model, const ActiveLaw& active, std::size_t record);
 
 }  // namespace framewatch::estimator

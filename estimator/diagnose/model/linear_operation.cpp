@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/model/hinges.h"
 #include "estimator/diagnose/model/modal_damping.h"
+#include "estimator/diagnose/model/model.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Absolute motion of the ground under a frame, as a row over the axes.
+/// Returns the absolute motion of the ground under a frame, as a row over the axes.
 Eigen::RowVectorXd ground_row(const Plant& plant, int frame) {
   return plant.ground.row(plant.structure.dof(1, frame));
 }

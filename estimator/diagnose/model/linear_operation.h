@@ -9,21 +9,22 @@
 
 namespace framewatch::estimator {
 
-/// Motion of a mass on a spring (LawForm::resonator) over that of its support. w: rad/s.
+/// Returns the motion of a mass on a spring (LawForm::resonator) over that of its support. w:
+/// rad/s.
 Complex transmissibility(const ModelEffect& resonator, double w);
 
-/// What a linear effect adds to the operation D(w) on the axes' motion (docs/equations.md 31): real
-/// matrices, the same at every frequency, times complex factors.
+/// Change of the operation D(w) on the axes' motion by a linear effect (docs/equations.md 31):
+/// constant real matrices times complex factors.
 class LinearOperation {
  public:
   /// effect: not an element law. Errors of axes and external forces add nothing.
   LinearOperation(const Plant& plant, const Model& model, const ModelEffect& effect);
 
-  /// equations x axes; w: rad/s.
+  /// Returns the change: equations x axes. w: rad/s.
   Eigen::MatrixXcd at(double w) const;
   void add_to(double w, Eigen::MatrixXcd& operation) const;
   /// Adds the operation, or its adjoint, times the column of every frequency. motion: axes x
-  /// frequencies, or equations x frequencies.
+  /// frequencies, or equations x frequencies for the adjoint.
   void add_times(const Eigen::VectorXd& w, const Eigen::MatrixXcd& motion, bool adjoint,
                  Eigen::MatrixXcd& out) const;
 

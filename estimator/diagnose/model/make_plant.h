@@ -9,9 +9,17 @@
 
 namespace framewatch::estimator {
 
-/// design: theta order of `structure`. Where axes stand at places in plan or floors have none, the
-/// plant of partial_plant(). Empty when the base is not measured in a direction that is measured
-/// above it.
+/// Returns the plant of a building whose axes cover some floors, have places in plan, or measure
+/// forces. Unread motions become Plant::unread, and stories between measured floors are tied
+/// (story_groups()). design: theta order of `structure`. Returns nullopt if a direction is measured
+/// above the base but not at the base.
+std::optional<Plant> partial_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
+                                   const Eigen::VectorXd& design, const BendingStiffness& bending,
+                                   double rate_hz);
+
+/// Returns the plant of a building, or nullopt if a direction is measured above the base but not at
+/// the base. design: theta order of `structure`. Uses partial_plant() if axes have places in plan,
+/// measure forces or leave floors without axes, and if frames bend.
 std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
                                 const Eigen::VectorXd& design, double rate_hz,
                                 const BendingStiffness& bending = {});

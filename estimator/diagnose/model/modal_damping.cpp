@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "estimator/diagnose/model/hinges.h"
+#include "estimator/diagnose/model/model.h"
 #include "estimator/numeric/eigenvalues.h"
 
 namespace framewatch::estimator {

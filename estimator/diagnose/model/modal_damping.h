@@ -18,22 +18,23 @@ struct ModelModes {
 };
 ModelModes modes_of(const Plant& plant, const Model& model);
 
-/// Damping matrix of one effect LawForm::modal_damping, 2 h w M phi phi' M, and of all that a model
-/// has: coordinates x coordinates.
+/// Returns the damping matrix 2 h w M phi phi' M of one effect LawForm::modal_damping, or the sum
+/// over all of a model: coordinates x coordinates.
 Eigen::MatrixXd modal_damping(const Plant& plant, const Model& model, const ModelEffect& effect);
 Eigen::MatrixXd modal_damping(const Plant& plant, const Model& model);
-/// Whether it has any that is not zero.
+/// Returns true if a modal damping ratio of the model is not zero.
 bool has_modal_damping(const Model& model);
 
-/// Indices of the effects LawForm::modal_damping of modes whose frequency lies within the band of
-/// all records.
+/// Returns the indices of the effects LawForm::modal_damping whose mode lies within the band of all
+/// records.
 std::vector<std::size_t> modes_in_band(const Plant& plant, const Model& model,
                                        const std::vector<RecordSegment>& records);
 
-/// Motion of the coordinates relative to the ground by that of the axes: coordinates x axes.
+/// Returns the matrix from the axes' motion to the coordinates' motion relative to the ground:
+/// coordinates x axes.
 Eigen::MatrixXd relative_motion(const Plant& plant);
 
-/// The parameter of LawForm::modal_damping.
+/// Returns the parameter of LawForm::modal_damping.
 LawParameter modal_ratio(double value);
 
 }  // namespace framewatch::estimator

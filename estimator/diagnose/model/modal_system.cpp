@@ -17,7 +17,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// (e^x - 1) / x and (e^x - 1 - x) / x^2.
+/// Returns (e^x - 1) / x and (e^x - 1 - x) / x^2.
 std::pair<Complex, Complex> hold_weights(Complex x) {
   if (std::abs(x) < 1e-2) {
     const Complex one = 1.0 + x * (0.5 + x * (1.0 / 6 + x * (1.0 / 24 + x / 120.0)));
@@ -35,7 +35,7 @@ ModalSystem::ModalSystem(const MatrixXd& mass, const MatrixXd& damping, const Ma
     : coordinates_(mass.rows()) {
   const Index n = coordinates_;
   const MatrixXd per_mass = inverse(mass);
-  // Velocities in units of a typical frequency: keeps the eigenvectors well conditioned.
+  // Velocities are in units of a typical frequency, which keeps the eigenvectors well conditioned.
   const double scale =
       std::sqrt(std::max(1e-12, (per_mass * stiffness).trace() / static_cast<double>(n)));
   MatrixXd a = MatrixXd::Zero(2 * n, 2 * n);

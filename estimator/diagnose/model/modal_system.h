@@ -4,30 +4,30 @@
 
 namespace framewatch::estimator {
 
-/// M y'' + C y' + K y = P u, integrated in its complex modes with u linear within a step: exact for
-/// the linear part at any step length. Sources: docs/equations.md (29), Foss (1958).
+/// Integrates M y'' + C y' + K y = P u in its complex modes, with u linear within a step. The
+/// linear part is exact at any step length. Sources: docs/equations.md (29), Foss (1958).
 class ModalSystem {
  public:
   /// P: coordinates x inputs; mass: coordinates x coordinates, positive definite.
   ModalSystem(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& damping,
               const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& inputs, double step_s);
 
-  /// Adds an input; out: its index. per_mass: the acceleration of the coordinates that a unit of it
-  /// makes at rest.
+  /// Adds an input and returns its index. per_mass: acceleration of the coordinates at rest per
+  /// unit of the input.
   Eigen::Index add_input(const Eigen::VectorXd& per_mass);
 
-  /// Back to rest.
+  /// Returns to rest.
   void reset();
-  /// To a state of motion: displacements and velocities of the coordinates, without inputs.
+  /// Starts from displacements and velocities of the coordinates, without inputs.
   void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
-  /// Advances the state by a step with the inputs `now` at its end; inputs that depend on the
-  /// motion are zero there.
+  /// Advances the state by a step with the inputs `now` at its end. Inputs that depend on the
+  /// motion are zero in `now`.
   void predict(const Eigen::VectorXd& now);
-  /// Adds the inputs that depend on the motion, at the end of the same step.
+  /// Adds the inputs that depend on the motion at the end of the same step.
   void correct(const Eigen::VectorXd& now);
 
-  /// Displacement and velocity r y of the coordinates: rows that give them from the state, and what
-  /// an input at the end of a step adds to them.
+  /// Displacement and velocity r y of the coordinates as functions of the state, and their gains
+  /// from inputs at the end of a step.
   struct Observer {
     Eigen::RowVectorXcd displacement, velocity;           ///< over the modes
     Eigen::RowVectorXd displacement_gain, velocity_gain;  ///< over the inputs
@@ -35,7 +35,7 @@ class ModalSystem {
   Observer observe(const Eigen::VectorXd& row) const;
   double displacement(const Observer& o) const { return (o.displacement * state_)(0).real(); }
   double velocity(const Observer& o) const { return (o.velocity * state_)(0).real(); }
-  /// False when the modes cannot be computed or one of them grows.
+  /// Returns false if the modes cannot be computed or one of them grows.
   bool good() const { return good_; }
 
  private:

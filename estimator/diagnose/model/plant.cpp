@@ -22,7 +22,7 @@ Plant::Plant(const Structure& s, const std::vector<SensorAxis>& sensors, VectorX
   motion = mass.cwiseInverse().asDiagonal() * building.mass;
   push = MatrixXd::Zero(building.equations(), building.axes());
   ground = MatrixXd::Zero(s.degrees_of_freedom(), building.axes());
-  // Of every story upward: a base that rocks moves a floor the more the higher it lies.
+  // Sums from story to story: a rocking base moves higher floors more.
   for (int story = 1; story <= s.stories; ++story)
     for (int f = 0; f < s.frames(); ++f) {
       const int at = table.frame_stiffness(story, f);
@@ -54,6 +54,25 @@ Plant with_force_axis(const Plant& plant, const SensorAxis& axis) {
   out.push.leftCols(axes - 1) = plant.push;
   out.push.col(axes - 1) =
       -out.constraint.row(plant.structure.dof(axis.story, axis.frame)).transpose();
+  return out;
+}
+
+Plant component_plant(const Plant& plant, const ComponentTest& component) {
+  if (component.force.empty()) return plant;
+  SensorAxis force;
+  force.name = component.force;
+  force.story = 1;
+  force.frame = 0;
+  Plant out = with_force_axis(plant, force);
+  out.prescribed = component.prescribed;
+  return out;
+}
+
+std::vector<char> displaced_axes(const Plant& plant, const ComponentTest& component) {
+  std::vector<char> out(plant.axes.size(), 0);
+  for (std::size_t i = 0; i < plant.axes.size(); ++i)
+    out[i] = component.displacement && plant.axes[i].story == 1 &&
+             !plant.is_force(static_cast<Eigen::Index>(i));
   return out;
 }
 

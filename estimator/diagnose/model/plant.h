@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,20 +13,21 @@
 
 namespace framewatch::estimator {
 
-/// Frames' stories that keep their shares of the design: one stiffness and one damping factor.
+/// Stories of frames that keep their shares of the design: they share one stiffness and one damping
+/// factor.
 struct TiedStories {
   std::vector<int> elements;  ///< in theta, the lowest story first
 };
 
 /// The building under diagnosis: its equations of motion in terms of the sensor axes, and its
-/// design parameters. One equation per coordinate (degree of freedom; of rigid floors: see
+/// design parameters. One equation per coordinate (degree of freedom; for rigid floors see
 /// floor_constraint).
 struct Plant {
   Plant(const Structure& s, const std::vector<SensorAxis>& sensors, Eigen::VectorXd believed,
         MeasuredBuilding equations);
 
   Structure structure;
-  /// The floors are declared rigid, but the sensors could show that they are not: `structure` then
+  /// The floors are declared rigid, but the sensors could show that they are not. `structure` then
   /// has flexible floors with panels so stiff that they act as rigid.
   bool stiff_floors = false;
   double highest_hz = 0;  ///< highest natural frequency of the design
@@ -38,38 +40,54 @@ struct Plant {
   Eigen::VectorXd mass;        ///< of the coordinates, kg
   Eigen::MatrixXd motion;      ///< coordinates x axes: their absolute motion
   Eigen::MatrixXd ground;      ///< degrees of freedom x axes: the ground's motion there
-  /// equations x axes: minus the direction of the force that a force axis measures; zero for
-  /// others.
+  /// equations x axes: minus the direction of the force that a force axis measures; zero for other
+  /// axes.
   Eigen::MatrixXd push;
   /// Component test with prescribed motion and measured force: the model's output is the force.
   bool prescribed = false;
-  /// Motions of the coordinates that no axis reads, orthonormal columns, and what completes them:
-  /// coordinates x motions. They are the columns of the building's `mass` and `sense`, and of
-  /// `motion`, behind those of the axes, and follow from the axes' by the equations of motion.
-  /// Without columns where the axes read all.
+  /// Orthonormal basis of the coordinates' motions that no axis reads (unread) and of its
+  /// complement (read): coordinates x motions. The unread motions are the last columns of the
+  /// building's `mass` and `sense` and of `motion`, after the axes; the equations of motion
+  /// determine them. No columns if the axes read all motions.
   Eigen::MatrixXd unread, read;
-  std::vector<TiedStories> groups;  ///< empty: every element has factors of its own
+  std::vector<TiedStories> groups;  ///< empty: every element has separate factors
   BendingStiffness bending;         ///< of the design
 
   Eigen::Index equations() const { return building.equations(); }
   Eigen::Index element_count() const { return building.elements(); }
   Eigen::Index axis_count() const { return building.axes() - unread.cols(); }
-  /// Equations that are left when the motions that no axis reads are eliminated.
+  /// Returns the equations left after eliminating the motions that no axis reads.
   Eigen::Index read_equations() const { return equations() - unread.cols(); }
-  /// Whether a fit's work must be saved: docs/diagnosis.md, "Large buildings".
+  /// Returns true if fits must use less work: docs/diagnosis.md, "Large buildings".
   bool is_large() const {
     constexpr Eigen::Index kLarge = 40;  // equations
     return equations() > kLarge;
   }
   bool is_force(Eigen::Index axis) const { return !push.col(axis).isZero(0); }
-  /// Whether a simulation is driven by the axis: an axis of the base, or a force axis.
+  /// Returns true if the axis drives a simulation: an axis of the base, or a force axis.
   bool is_input(Eigen::Index axis) const {
     return axes[static_cast<std::size_t>(axis)].story == 0 || is_force(axis);
   }
 };
 
-/// The plant with one more axis, which measures an external force (N) on one degree of freedom,
-/// that of the frame and story of `axis`.
+/// Returns the plant with one more axis, which measures an external force (N) on the degree of
+/// freedom at the frame and story of `axis`.
 Plant with_force_axis(const Plant& plant, const SensorAxis& axis);
+
+/// A test of one structural part instead of a building: one story, one frame. If the records do not
+/// include the base, it is at rest.
+struct ComponentTest {
+  std::string force;          ///< name of the force at floor 1, N; "" if no force is measured
+  bool displacement = false;  ///< floor 1 measures displacement relative to the base, m
+  bool prescribed = false;    ///< the motion is prescribed, the force measured
+
+  bool any() const { return !force.empty() || displacement; }
+};
+
+/// Returns the plant with the force axis of a component test; unchanged if no force is measured.
+Plant component_plant(const Plant& plant, const ComponentTest& component);
+
+/// Returns for each axis if it measures displacement (RecordSegment::displaced).
+std::vector<char> displaced_axes(const Plant& plant, const ComponentTest& component);
 
 }  // namespace framewatch::estimator

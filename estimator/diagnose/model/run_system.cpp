@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <complex>
+#include <utility>
 
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/linear_operation.h"
 #include "estimator/diagnose/model/modal_damping.h"
+#include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
 
@@ -16,7 +18,30 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kMinMass_kg = 1e-9;  ///< of a resonator: its equation needs one
+bool are_same(const RunSystem& a, const RunSystem& b) {
+  const auto same = [](const MatrixXd& x, const MatrixXd& y) {
+    return x.rows() == y.rows() && x.cols() == y.cols() && x == y;
+  };
+  return same(a.stiffness, b.stiffness) && same(a.damping, b.damping) && same(a.mass, b.mass) &&
+         same(a.inputs, b.inputs);
+}
+
+MatrixXd driving_signals(const VectorXd& errors, const RecordSegment& segment,
+                         const std::vector<Index>& axes, int ratio) {
+  const Index lead = segment.lead.rows(), samples = lead + segment.intervals();
+  MatrixXd out(static_cast<Index>(axes.size()), samples * ratio);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    VectorXd signal(samples);
+    signal.head(lead) = segment.lead.col(axes[i]);
+    signal.tail(segment.intervals()) = segment.accel.col(axes[i]).head(segment.intervals());
+    signal /= 1 + errors[2 * at];
+    out.row(at) = upsampled(signal, ratio, -errors[2 * at + 1] * segment.rate_hz).transpose();
+  }
+  return out;
+}
+
+constexpr double kMinMass_kg = 1e-9;  ///< of a resonator: its equation needs a mass
 
 /// at: coordinate of the resonator's mass.
 void add_resonator(const Plant& plant, const ModelEffect& e, Index at, RunSystem& out) {
@@ -44,7 +69,8 @@ void add_panels(const Plant& plant, const Model& model, const ModelEffect& e, Ru
   }
 }
 
-/// Rotation of the base or of the frames: constant matrices, read off the operation at 1 rad/s.
+/// Adds a rotation of the base or of the frames: constant matrices, taken from the operation at 1
+/// rad/s.
 void add_rotation(const Plant& plant, const Model& model, const ModelEffect& e, RunSystem& out) {
   const Index n = plant.equations();
   const Eigen::MatrixXcd change = LinearOperation(plant, model, e).at(1.0);
@@ -53,7 +79,7 @@ void add_rotation(const Plant& plant, const Model& model, const ModelEffect& e, 
   out.damping.topLeftCorner(n, n) -= (change * back.cast<std::complex<double>>()).imag();
 }
 
-/// A linear effect that has no coordinate of its own.
+/// Adds a linear effect without a separate coordinate.
 void add_linear_effect(const Plant& plant, const Model& model, const ModelEffect& e,
                        RunSystem& out) {
   const Index n = plant.equations();
@@ -75,7 +101,8 @@ void add_linear_effect(const Plant& plant, const Model& model, const ModelEffect
   }
 }
 
-/// Inputs of the driving axes: inertia forces of the base's motion, or the measured force itself.
+/// Sets the inputs of the driving axes: inertia forces of the base's motion, or the measured force
+/// itself.
 void set_driving_inputs(const Plant& plant, const Model& model, const std::vector<Index>& driving,
                         RunSystem& out) {
   const Index n = plant.equations();
@@ -101,7 +128,8 @@ void set_driving_inputs(const Plant& plant, const Model& model, const std::vecto
   }
 }
 
-/// Inertia forces of the resonators under the base's motion, and the inputs of the effects' forces.
+/// Sets the inertia forces of the resonators under the base's motion, and the inputs of the
+/// effects' forces.
 void set_effect_inputs(const Plant& plant, const Model& model, const std::vector<Index>& driving,
                        RunSystem& out) {
   const Index n = plant.equations();
@@ -156,6 +184,29 @@ RunSystem run_system(const Plant& plant, const Model& model, const std::vector<I
   set_driving_inputs(plant, model, driving, out);
   set_effect_inputs(plant, model, driving, out);
   return out;
+}
+
+const ModalSystem& RunCache::modes(const RunSystem& parts, double step_s) {
+  if (!modes_ || modes_->step_s != step_s || !are_same(modes_->parts, parts)) {
+    ++computed_;
+    modes_ = Modes{parts, step_s,
+                   ModalSystem(parts.mass, parts.damping, parts.stiffness, parts.inputs, step_s)};
+  }
+  return modes_->system;
+}
+
+const MatrixXd& RunCache::driving(const Model& model, const RecordSegment& segment,
+                                  std::size_t record, const std::vector<Index>& axes, int ratio) {
+  VectorXd errors(2 * static_cast<Index>(axes.size()));
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    errors.segment(2 * static_cast<Index>(i), 2) << model.gain[axes[i]], model.clock_s[axes[i]];
+  auto kept = driving_.find(record);
+  if (kept == driving_.end() || kept->second.ratio != ratio || kept->second.errors != errors)
+    kept = driving_
+               .insert_or_assign(
+                   record, Driving{errors, ratio, driving_signals(errors, segment, axes, ratio)})
+               .first;
+  return kept->second.signals;
 }
 
 }  // namespace framewatch::estimator

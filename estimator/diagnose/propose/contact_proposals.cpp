@@ -6,16 +6,17 @@
 #include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/propose/law_starts.h"
-#include "estimator/diagnose/propose/scalar_fit.h"
+#include "estimator/diagnose/propose/needed_signal.h"
 
 namespace framewatch::estimator {
 namespace {
 
 using Eigen::VectorXcd;
 
-constexpr std::size_t kMaxFrames = 4;  ///< whole frames that are tried in one direction
+constexpr std::size_t kMaxFrames = 4;  ///< whole frames to try in one direction
 constexpr double kFirstShare = 0.05;   ///< of the stiffness that a start takes at the peak
-/// Exponents that softening starts from: of the squared deformation, and soonest at the smallest.
+/// Start exponents of softening: with the squared deformation, and fastest at the smallest
+/// deformations.
 constexpr double kSoftens = 2, kSoftensSooner = 1.3;
 
 MeasuredDeformation motion_of(const Fitter& fitter, const Localisation& place, const LawPort& port,
@@ -32,13 +33,6 @@ void set_scales(const Fitter& fitter, const Localisation& place, ModelEffect& ef
       effect.deformation = std::max(effect.deformation, motion.d.cwiseAbs().maxCoeff());
       effect.rate = std::max(effect.rate, motion.v.cwiseAbs().maxCoeff());
     }
-}
-
-Proposal proposal_of(const Localisation& place, ModelEffect effect, EffectKind kind,
-                     double misfit) {
-  Proposal out{place.model, kind, effect.place, misfit};
-  out.model.effects.push_back(std::move(effect));
-  return out;
 }
 
 }  // namespace

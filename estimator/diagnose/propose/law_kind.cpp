@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "estimator/diagnose/propose/scalar_fit.h"
+#include "estimator/diagnose/propose/needed_signal.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -18,10 +18,10 @@ using Eigen::VectorXd;
 constexpr int kCells = 15;
 constexpr int kMinCount = 3;           ///< samples of a cell that is shown
 constexpr int kTimes = 8;              ///< supports of a stiffness that varies in time
-constexpr double kNearlyAll = 0.93;    ///< of the best share, that a simpler kind must explain
+constexpr double kNearlyAll = 0.93;    ///< of the best share, which a simpler kind must explain
 constexpr double kKindFollows = 0.5;   ///< share below which no kind explains the force
 constexpr double kBeyondChance = 1.3;  ///< misfit of a linear element over noise
-constexpr double kAsImpact = 0.7;      ///< of the powers' rest, that a clearance must leave at most
+constexpr double kAsImpact = 0.7;      ///< of the powers' rest, which a clearance must not exceed
 constexpr double kPowersDo = 0.97;     ///< share from which powers explain all
 constexpr int kClearances = 12;        ///< tried, up to the largest deformation
 
@@ -37,8 +37,8 @@ Columns powers(const NeededSignal& n, const Scales& s) {
   return {x * x.abs(), x.cube(), x.square(), x.cube() * x.square()};
 }
 
-/// Forces of springs of unit stiffness, each with a dashpot beside it, beyond a clearance:
-/// resisting the deformation up, and down. They only push.
+/// Returns the forces of springs of unit stiffness with dashpots beyond a clearance: against
+/// positive and against negative deformation. They only push.
 Columns contact(const NeededSignal& n, const Scales& s, double clearance, double dashpot = 0) {
   const auto x = (n.d_t / s.d).array().eval();
   const auto damped = (dashpot * n.v_t / s.v).array().eval();
@@ -49,7 +49,7 @@ Columns contact(const NeededSignal& n, const Scales& s, double clearance, double
   return {side(1), side(-1)};
 }
 
-/// Powers, and a broken line.
+/// Returns powers and a broken line.
 Columns functions(const NeededSignal& n, const Scales& s) {
   Columns out = powers(n, s);
   for (const double at : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9})
@@ -65,7 +65,7 @@ Columns rates(const NeededSignal& n, const Scales& s) {
   return out;
 }
 
-/// Force of a spring that gives way at `limit`, over its stiffness.
+/// Returns the force of a spring that yields at `limit`, over its stiffness.
 VectorXd stopped(const VectorXd& d, double limit) {
   VectorXd out(d.size());
   double slider = 0;
@@ -76,8 +76,8 @@ VectorXd stopped(const VectorXd& d, double limit) {
   return out;
 }
 
-/// Force of a spring over its stiffness that gives way at `limit` and is slack up to where it has
-/// been.
+/// Returns the force, over its stiffness, of a spring that yields at `limit` and stays slack by its
+/// plastic deformation.
 VectorXd slackened(const VectorXd& d, double limit) {
   VectorXd out(d.size());
   double up = 0, down = 0;
@@ -89,7 +89,7 @@ VectorXd slackened(const VectorXd& d, double limit) {
   return out;
 }
 
-/// How far the deformation has gone to and fro, as a share of the whole way.
+/// Returns the path length of the deformation up to each instant, as a share of the whole path.
 VectorXd way(const VectorXd& d) {
   VectorXd out(d.size());
   double sum = 0;
@@ -97,8 +97,8 @@ VectorXd way(const VectorXd& d) {
   return out / std::max(sum, 1e-300);
 }
 
-/// Stop operators, how they grow or fade with the deformation (pinching) and with all that was
-/// before (degrading), and springs that are slack.
+/// Returns stop operators, their products with the deformation (pinching) and with the path length
+/// (degradation), and slack springs.
 Columns memories(const NeededSignal& n, const Scales& s) {
   const VectorXd x = n.d_t / s.d;
   Columns out;
@@ -112,8 +112,8 @@ Columns memories(const NeededSignal& n, const Scales& s) {
   return out;
 }
 
-/// The deformation, weighted by hats in time; the first is left out: all of them are the linear
-/// spring.
+/// Returns the deformation weighted by hats in time. The first hat is left out because their sum is
+/// the linear spring.
 Columns times(const NeededSignal& n) {
   Columns out;
   const Index size = n.d_t.size();
@@ -128,7 +128,7 @@ Columns times(const NeededSignal& n) {
   return out;
 }
 
-/// Indices of the linear columns, then of some behind them.
+/// Returns the indices of the linear columns, then of some columns after them.
 std::vector<Index> with_linear(Index linear, const std::vector<Index>& others) {
   std::vector<Index> out(static_cast<std::size_t>(linear));
   std::iota(out.begin(), out.end(), Index{0});
@@ -175,7 +175,7 @@ class KindSearch {
   }
 
  private:
-  /// Misfit beside a linear element. own: every record has its own coefficients.
+  /// Returns the misfit with a linear element. own: separate coefficients for every record.
   template <typename Make>
   double rest(const Make& make, bool own) const {
     return sums(make, own).fit().misfit;
@@ -201,8 +201,8 @@ class KindSearch {
     return out;
   }
 
-  /// The same beside springs with dashpots that push beyond the best clearance, to both sides or
-  /// one.
+  /// Returns the misfit with springs and dashpots that push beyond the best clearance, on one side
+  /// or both.
   double rest_of_clearance() const {
     const Index linear = needed_.front().has_mass ? 3 : 2;
     const std::vector<Index> sides[] = {with_linear(linear, {0}), with_linear(linear, {1}),

@@ -6,8 +6,6 @@
 
 #include "estimator/diagnose/law/hysteretic_force.h"
 #include "estimator/diagnose/law/law.h"
-#include "estimator/diagnose/law/slack.h"
-#include "estimator/diagnose/law/sliding.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -15,8 +13,8 @@ namespace {
 using F = LawForm;
 using Shape = std::vector<LawParameter>;
 
-constexpr double kBilinear = 40;  ///< exponent of hysteresis with a corner
-constexpr double kSmooth = 20;    ///< exponent below which hysteresis has none
+constexpr double kBilinear = 40;  ///< exponent of bilinear hysteresis
+constexpr double kSmooth = 20;    ///< exponent below which hysteresis is smooth
 constexpr double kMaxLoss = 5;
 
 std::vector<double> shrinking(double from, double to, double factor) {
@@ -41,8 +39,9 @@ void add_losses(Shape& shape) {
 }
 
 LawStarts bouc_wen(const LawScale& s, double exponent) {
-  const bool corner = exponent > kSmooth;
-  LawStarts out{F::hysteresis, corner ? EffectKind::bilinear_hysteresis : EffectKind::bouc_wen, {}};
+  const bool bilinear = exponent > kSmooth;
+  LawStarts out{
+      F::hysteresis, bilinear ? EffectKind::bilinear_hysteresis : EffectKind::bouc_wen, {}};
   for (const double yield : shrinking(0.9, 0.004, 0.7)) {
     out.shapes.push_back(hysteretic(s, yield, exponent, 0.5));
     add_losses(out.shapes.back());
@@ -50,7 +49,7 @@ LawStarts bouc_wen(const LawScale& s, double exponent) {
   return out;
 }
 
-/// Round hysteresis that loses strength and stiffness with work.
+/// Returns smooth hysteresis that loses strength and stiffness with work.
 LawStarts degrading(const LawScale& s) {
   LawStarts out{F::hysteresis, EffectKind::bouc_wen, {}};
   for (const double exponent : {1.0, 2.0})
@@ -67,7 +66,7 @@ LawStarts degrading(const LawScale& s) {
   return out;
 }
 
-/// Hysteresis that hardens: without an end of z.
+/// Returns hysteresis that hardens: z has no limit.
 LawStarts hardening(const LawScale& s) {
   LawStarts out{F::hysteresis, EffectKind::bouc_wen, {}};
   for (const double yield : {0.25, 0.7, 2.0, 4.5}) {
@@ -89,7 +88,7 @@ LawStarts sliders(const LawScale& s) {
   return out;
 }
 
-/// Sharp at first, round after yielding, as steel; and equally round always.
+/// Returns steel (sharp at first, rounder after yielding) and laws of constant sharpness.
 LawStarts asymptotic(const LawScale& s) {
   LawStarts out{F::asymptotic, EffectKind::bilinear_hysteresis, {}};
   for (const bool steel : {true, false})
@@ -102,7 +101,7 @@ LawStarts asymptotic(const LawScale& s) {
   return out;
 }
 
-/// offset, slip_work: 0 of a zone that is open from the start.
+/// offset; slip_work 0: the slip zone is open from the start.
 Shape pinched(const LawScale& s, double yield, double exponent, double slip, double width,
               double offset, double slip_work) {
   Shape out = hysteretic(s, yield, exponent, 0.5);
@@ -123,7 +122,7 @@ LawStarts slip_about_force(const LawScale& s) {
   return out;
 }
 
-/// Wider zones that open with work, beside zero force: what walls and bolted joints do.
+/// Returns wider zones beside zero force that open with work, as in walls and bolted joints.
 LawStarts slip_that_opens(const LawScale& s) {
   LawStarts out{F::pinched, EffectKind::pinching, {}};
   for (const double width : {0.3, 0.6})
@@ -132,7 +131,7 @@ LawStarts slip_that_opens(const LawScale& s) {
   return out;
 }
 
-/// The slip zone lies about zero deformation: joints with play.
+/// Returns laws with a slip zone around zero deformation: joints with play.
 LawStarts slip_lock(const LawScale& s) {
   LawStarts out{F::slip_lock, EffectKind::pinching, {}};
   for (const double width : {0.15, 0.4})  // of the largest deformation
@@ -148,7 +147,7 @@ LawStarts slip_lock(const LawScale& s) {
   return out;
 }
 
-/// Braces that are slack by what they have yielded.
+/// Returns braces that become slack by yielding.
 LawStarts slack(const LawScale& s) {
   LawStarts out{F::slack, EffectKind::pinching, {}};
   for (const double play : {0.0, 0.1, 0.3})  // of the largest deformation
@@ -174,7 +173,7 @@ LawStarts friction(const LawScale& s, bool stribeck) {
   return out;
 }
 
-/// Whether the force has the velocity's sign: then its amplitude is not negative.
+/// Returns true if the force has the velocity's sign; its amplitude is then not negative.
 bool resists_velocity(LawForm form) {
   return is_hysteretic(form) || form == F::friction || form == F::power_damping;
 }

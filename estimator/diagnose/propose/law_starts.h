@@ -7,7 +7,7 @@
 
 namespace framewatch::estimator {
 
-/// What the sizes of a law are measured in.
+/// Scales of a law's parameters.
 struct LawScale {
   double stiffness = 1;    ///< of the element, N/m
   double deformation = 1;  ///< its largest, m
@@ -16,7 +16,7 @@ struct LawScale {
   double force() const { return stiffness * deformation; }
 };
 
-/// One family of laws with the shapes from which a fit may start; amplitudes are 1, and a contact's
+/// One family of laws with the shapes that a fit may start from. Amplitudes are 1, and a contact's
 /// dashpot is that of a spring of 1 N/m.
 struct LawStarts {
   LawForm form;
@@ -24,18 +24,19 @@ struct LawStarts {
   std::vector<std::vector<LawParameter>> shapes;
 };
 
-/// Springs and dashpots without memory: powers, a spring that saturates, friction, contacts.
+/// Returns springs and dashpots without memory: powers, a saturating spring, friction, contacts.
 std::vector<LawStarts> plain_starts(const LawScale& scale);
-/// Contacts alone.
+/// Returns contacts only.
 std::vector<LawStarts> contact_starts(const LawScale& scale);
-/// Hysteresis of every kind. pinching: also with slip zones.
+/// Returns hysteresis of every kind. pinching: include laws with slip zones.
 std::vector<LawStarts> hysteretic_starts(const LawScale& scale, bool pinching);
 
-/// Whether a start of an effect may have an amplitude: what damps does not drive.
+/// Returns true if a start of an effect may have this amplitude: dissipative laws must not supply
+/// energy.
 bool has_amplitude(const ModelEffect& effect, double amplitude);
-/// Gives a start its amplitude, and a contact the dashpot that belongs to it.
+/// Sets the amplitude of a start, and the matching dashpot of a contact.
 void set_amplitude(ModelEffect& effect, double amplitude);
-/// Multiplies the amplitude that an effect has, if it has one, within its bounds.
+/// Multiplies the amplitude of an effect, if it has one, within its bounds.
 void scale_amplitude(double factor, ModelEffect& effect);
 
 /// Frees the parameters that a first fit holds: exponents, unloading, losses, dashpots.

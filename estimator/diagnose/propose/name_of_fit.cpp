@@ -13,13 +13,14 @@ namespace {
 constexpr double kQuadratic = 2.45;  ///< exponent below which a spring counts as quadratic
 constexpr double kNoPower = 0.25;    ///< exponent of the rate below which it is friction
 constexpr double kSlips = 1.3;       ///< stiffness at yielding over that at zero force
-constexpr double kRigid = 0.02;  ///< yield deformation below which it is friction, of the largest
+constexpr double kRigid =
+    0.02;  ///< yield deformation, relative to the largest, below which it is friction
 
 EffectKind elastic_name(double exponent) {
   return exponent < kQuadratic ? EffectKind::quadratic_stiffness : EffectKind::cubic_stiffness;
 }
 
-/// Whether a pinched law is clearly softer at zero force than where it yields.
+/// Returns true if a pinched law is clearly softer at zero force than where it yields.
 bool slips(const ModelEffect& effect) {
   using H = HysteresisIndex;
   const auto p = [&](std::size_t i) { return effect.parameters[i].plain(); };
@@ -98,7 +99,7 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) 
       return effect.parameters[0].plain() < 0 ? elastic_name(nearest_exponent(effect))
                                               : EffectKind::two_sided_gap;
     case LawForm::changing: {
-      // The length of a change shows only in records with motion while it goes on.
+      // The length of a change shows only in records with motion during the change.
       double shortest = 1e300;
       for (const std::vector<LawParameter>& parameters : effect.record_parameters)
         shortest = std::min(shortest, parameters[1].plain());

@@ -6,16 +6,17 @@
 
 namespace framewatch::estimator {
 
-/// The catalogue's name for a fitted effect: within a family of laws the fitted exponent, duration
-/// or width decides. segment: the first one, whose length decides between a drop and a drift.
+/// Returns the catalog's name for a fitted effect. Within a family of laws the fitted exponent,
+/// duration or width decides. segment: the first one, whose length distinguishes a drop from a
+/// drift.
 EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment);
 
-/// Hysteresis as a pinched law (LawForm::pinched) has it at zero force, throughout: what a slip
-/// zone as wide as the whole loop is.
+/// Returns a hysteresis that acts everywhere as the pinched law (LawForm::pinched) acts at zero
+/// force. Equivalent to a slip zone as wide as the whole loop.
 ModelEffect without_slip(const ModelEffect& pinched);
 
-/// Exponent of the power law that, beside a linear spring, comes nearest to a spring's force over
-/// the deformations of a sine. effect: an element law without memory.
+/// Returns the exponent of the power law that, with a linear spring, is nearest to a spring's force
+/// over the deformations of a sine. effect: an element law without memory.
 double nearest_exponent(const ModelEffect& effect);
 
 }  // namespace framewatch::estimator

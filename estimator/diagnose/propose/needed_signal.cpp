@@ -7,8 +7,10 @@
 #include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/numeric/complex.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
+namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
@@ -16,16 +18,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-namespace {
-
-/// weighted: roots of the weights.
+/// Returns real and imaginary parts, multiplied by the roots of the weights.
 VectorXd real_rows(const VectorXcd& signal, const VectorXd& root) {
   VectorXd out(2 * signal.size());
   out << signal.real().cwiseProduct(root), signal.imag().cwiseProduct(root);
   return out;
 }
 
-/// Orthonormal columns with the span of those of x, those that depend on others left out.
+/// Returns orthonormal columns with the span of x. Leaves out dependent columns.
 MatrixXd orthonormal(MatrixXd x) {
   constexpr double kDependent = 1e-6;
   Index kept = 0;
@@ -39,7 +39,7 @@ MatrixXd orthonormal(MatrixXd x) {
   return x.leftCols(kept);
 }
 
-/// ends of NeededSignal. along: per bin, the whitened direction of the place.
+/// Returns NeededSignal::ends. along: per bin, the whitened direction of the place.
 MatrixXd ends_of(const Whitened& system, const RecordSegment& s,
                  const std::vector<VectorXcd>& along, const VectorXd& weight) {
   const Index n = system.operation.equations();
@@ -108,7 +108,7 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
       VectorXcd u = system.weights->whitener(b).times(
           axis ? VectorXcd(system.operation[at].col(candidate.axis))
                : VectorXcd(candidate.directions.col(0).cast<Complex>()));
-      if (!others.empty()) {  // the part that the other places explain is not counted
+      if (!others.empty()) {  // exclude the part that the other places explain
         const MatrixXcd basis = candidate_basis(system, b, others);
         u -= (basis * (basis.adjoint() * u)).eval();
       }
@@ -156,6 +156,67 @@ std::vector<VectorXcd> columns_with(const ModelEffect& effect, const Fitter& fit
   std::vector<VectorXcd> out = linear_columns(n, s.w);
   const VectorXd force = law_force(effect.law(record), n.d_t, n.v_t, 1 / (s.rate_hz * ratio));
   out.push_back(band_of(force, s, ratio));
+  return out;
+}
+
+ScalarSums scalar_sums(const NeededSignal& needed, const std::vector<VectorXcd>& given) {
+  std::vector<VectorXcd> columns;
+  for (const VectorXcd& column : given) columns.push_back(needed.without_ends(column));
+  const VectorXcd force = needed.without_ends(needed.force);
+  const auto count = static_cast<Index>(columns.size());
+  const VectorXd& w = needed.weight;
+  ScalarSums out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0};
+  for (Index i = 0; i < count; ++i) {
+    const VectorXcd& a = columns[static_cast<std::size_t>(i)];
+    out.right[i] = (w.array() * (a.conjugate().array() * force.array()).real()).sum();
+    for (Index j = 0; j <= i; ++j) {
+      const VectorXcd& b = columns[static_cast<std::size_t>(j)];
+      out.normal(i, j) = (w.array() * (a.conjugate().array() * b.array()).real()).sum();
+      out.normal(j, i) = out.normal(i, j);
+    }
+  }
+  out.total = (w.array() * force.array().abs2()).sum();
+  return out;
+}
+
+ScalarSums& ScalarSums::operator+=(const ScalarSums& more) {
+  normal += more.normal;
+  right += more.right;
+  total += more.total;
+  return *this;
+}
+
+ScalarFit ScalarSums::fit() const {
+  const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  ScalarFit out;
+  out.coefficients = scale.asDiagonal() * Ldlt(scaled).solve(VectorXd(scale.asDiagonal() * right));
+  out.misfit = total - out.coefficients.dot(right);
+  return out;
+}
+
+ScalarFit scalar_fit(const std::vector<NeededSignal>& needed,
+                     const std::vector<std::vector<VectorXcd>>& columns) {
+  ScalarSums sums = scalar_sums(needed.front(), columns.front());
+  for (std::size_t r = 1; r < needed.size(); ++r) sums += scalar_sums(needed[r], columns[r]);
+  return sums.fit();
+}
+
+VectorXcd beyond_linear(const RecordSegment& s, const NeededSignal& needed) {
+  if (needed.d.size() == 0) return needed.without_ends(needed.force);
+  const std::vector<VectorXcd> columns = linear_columns(needed, s.w);
+  const VectorXd fit = scalar_fit({needed}, {columns}).coefficients;
+  VectorXcd rest = needed.force;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    rest -= fit[static_cast<Eigen::Index>(c)] * columns[c];
+  return needed.without_ends(rest);
+}
+
+Proposal proposal_of(const Localisation& place, ModelEffect effect, EffectKind kind,
+                     double misfit) {
+  Proposal out{place.model, kind, effect.place, misfit};
+  out.model.effects.push_back(std::move(effect));
   return out;
 }
 

@@ -3,11 +3,10 @@
 #include <vector>
 
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/propose/proposal.h"
 
 namespace framewatch::estimator {
 
-/// Adds what may act at a node: a hidden oscillator, a harmonic force from outside and, if the
+/// Adds effects that may act at a node: a hidden oscillator, an external harmonic force and, if the
 /// force does not follow the building's motion, an arbitrary force.
 void add_node_proposals(const Fitter& fitter, const Localisation& place,
                         const std::vector<NeededSignal>& needed, const EffectPlace& node,

@@ -1,25 +1,113 @@
 #include "estimator/diagnose/propose/propose.h"
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
+#include <vector>
 
-#include "estimator/diagnose/model/hinges.h"
-#include "estimator/diagnose/propose/axis_proposals.h"
+#include "estimator/diagnose/locate/localise.h"
+#include "estimator/diagnose/model/model.h"
 #include "estimator/diagnose/propose/contact_proposals.h"
 #include "estimator/diagnose/propose/element_proposals.h"
+#include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/propose/node_proposals.h"
-#include "estimator/diagnose/propose/scalar_fit.h"
+#include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
 
-Proposal with_effect(const Localisation& place, const ModelEffect& effect, EffectKind kind) {
-  Proposal out{place.model, kind, effect.place, 0};
-  out.model.effects.push_back(effect);
-  return out;
+int flat_samples(const RecordSegment& s, Index axis, double& level) {
+  const VectorXd a = s.accel.col(axis);
+  const double top = a.maxCoeff(), bottom = a.minCoeff();
+  const double width = 1e-3 * (top - bottom);
+  level = 0.5 * (top - bottom);
+  int high = 0, low = 0;
+  for (Index i = 0; i < a.size(); ++i) {
+    high += a[i] > top - width;
+    low += a[i] < bottom + width;
+  }
+  return std::max(high, low);
+}
+
+/// Adds the possible errors of the axis of a localization: gain or polarity, delay, misalignment,
+/// clipping.
+void add_axis_proposals(const Fitter& fitter, const Localisation& place,
+                        std::vector<Proposal>& out) {
+  const Plant& plant = fitter.plant();
+  const int axis = place.candidate_places.front().axis;
+  const EffectPlace here = place.candidate_places.front().place;
+  // Estimates the reading that the axis should have from all other axes.
+  double own = 0, cross = 0, late = 0, late_weight = 0;
+  std::vector<MatrixXcd> truth(place.motion.size());
+  for (std::size_t r = 0; r < place.motion.size(); ++r) {
+    const RecordSegment& s = fitter.segments()[r];
+    Model neutral = place.model;
+    const Whitened system =
+        whiten(plant, neutral, s, r, Forcing::measured, place.motion[r], fitter.ratio(r));
+    truth[r] = system.calibrated.row(axis);
+    const Index n = plant.equations();
+    for (Index b = 0; b < s.bins(); ++b) {
+      const auto at = static_cast<std::size_t>(b);
+      VectorXcd u = system.weights->whitener(b).times(system.operation[at].col(axis));
+      const VectorXcd rest = rows_of_bin(system.rest, b, n);
+      if (place.candidate_places.size() > 1) {
+        const MatrixXcd basis = candidate_basis(
+            system, b, {place.candidate_places.begin() + 1, place.candidate_places.end()});
+        u -= (basis * (basis.adjoint() * u)).eval();
+      }
+      const double weight = std::max(u.squaredNorm(), 1e-300);
+      const Complex read = truth[r](0, b);
+      const Complex should = read - u.dot(rest) / weight;
+      truth[r](0, b) = should;
+      own += weight * std::norm(should);
+      cross += weight * (std::conj(should) * read).real();
+      const Complex turn = std::conj(should) * read;
+      late += -weight * turn.imag() * s.w[b];
+      late_weight += weight * turn.real() * s.w[b] * s.w[b];
+    }
+  }
+  const double gain = own > 0 ? cross / own - 1 : 0;
+  {
+    Proposal p{place.model, gain < -1.5 ? EffectKind::polarity : EffectKind::gain_error, here, 0};
+    p.model.free_gain.push_back(axis);
+    p.model.gain[axis] += gain;
+    out.push_back(p);
+  }
+  {
+    Proposal p{place.model, EffectKind::time_shift, here, 0};
+    p.model.free_clock.push_back(axis);
+    if (late_weight > 0) p.model.clock_s[axis] += late / late_weight;
+    out.push_back(p);
+  }
+  const SensorAxis& a = plant.axes[static_cast<std::size_t>(axis)];
+  for (std::size_t other = 0; other < plant.axes.size(); ++other) {
+    const SensorAxis& b = plant.axes[other];
+    if (b.story != a.story || b.direction == a.direction) continue;
+    if (!a.horizontal() || !b.horizontal()) continue;
+    ModelEffect e;
+    e.form = LawForm::misaligned;
+    e.place = here;
+    e.place.kind = PlaceKind::channel_pair;
+    e.place.with_channel = static_cast<int>(other);
+    e.parameters = {bounded_parameter(0.0, 1e-3, -1.5, 1.5)};
+    out.push_back(proposal_of(place, std::move(e), EffectKind::misalignment));
+  }
+  for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
+    double level = 0;
+    if (flat_samples(fitter.segments()[r], axis, level) < 8) continue;
+    ModelEffect e;
+    e.form = LawForm::clipped;
+    e.place = here;
+    out.push_back(proposal_of(place, std::move(e), EffectKind::clipping));
+    break;
+  }
 }
 
 void add_masses(const Plant& plant, const Localisation& place, std::vector<Proposal>& out) {
@@ -28,10 +116,10 @@ void add_masses(const Plant& plant, const Localisation& place, std::vector<Propo
   e.form = LawForm::mass;
   e.place = place.candidate_places.front().place;
   e.parameters = {bounded_parameter(0.05 * typical, 0.01 * typical, -typical, 1e15)};
-  out.push_back(with_effect(place, e, EffectKind::extra_mass));
+  out.push_back(proposal_of(place, e, EffectKind::extra_mass));
 }
 
-/// The flexibility of rotations that stores a twentieth of what the elements store under their
+/// Returns a flexibility of rotations that stores a twentieth of the elements' energy under the
 /// floors' inertia.
 double small_flexibility(const Plant& plant, const Model& model, const ModelEffect& effect) {
   constexpr double kShare = 0.05;
@@ -56,7 +144,7 @@ void add_rotations(const Plant& plant, const Localisation& place, std::vector<Pr
     e.place = place.candidate_places.front().place;
     const double flexibility = small_flexibility(plant, place.model, e);
     e.parameters = {bounded_parameter(flexibility, 0.1 * flexibility, 0, 1e15)};
-    out.push_back(with_effect(
+    out.push_back(proposal_of(
         place, e, form == LawForm::rocking ? EffectKind::base_rocking : EffectKind::frame_bending));
   }
 }
@@ -69,11 +157,11 @@ void add_floors(const Plant& plant, const Localisation& place, std::vector<Propo
     e.place = place.candidate_places.front().place;
     e.parameters = {logarithmic_parameter(share * k, 1e-3 * k, 1e3 * k),
                     bounded_parameter(1e-3 * share * k, 1e-4 * share * k, 0, 1e15)};
-    out.push_back(with_effect(place, e, EffectKind::floor_flexibility));
+    out.push_back(proposal_of(place, e, EffectKind::floor_flexibility));
   }
 }
 
-/// Scalar fit of the size of a linear effect to the needed force.
+/// Fits the size of a linear effect to the needed force.
 ScalarFit fit_of(const Fitter& fitter, const Localisation& place,
                  const std::vector<NeededSignal>& needed, ModelEffect effect) {
   effect.parameters[0].value = 1;
@@ -91,7 +179,7 @@ ScalarFit fit_of(const Fitter& fitter, const Localisation& place,
   return scalar_fit(needed, columns);
 }
 
-/// A spring or damper at the place, as large as a twentieth of a frame's.
+/// Returns a spring or damper at the place with a twentieth of a frame's size.
 ModelEffect link_at(const Plant& plant, const EffectPlace& place, bool spring) {
   ModelEffect e;
   e.form = spring ? LawForm::spring : LawForm::damper;
@@ -113,7 +201,7 @@ void add_links(const Fitter& fitter, const Localisation& place,
     ModelEffect e = link_at(fitter.plant(), place.candidate_places.front().place, spring);
     const ScalarFit fit = fit_of(fitter, place, needed, e);
     if (spring || fit.coefficients[0] > 0) e.parameters[0].value = fit.coefficients[0];
-    out.push_back(with_effect(place, e, kind_of_link(e)));
+    out.push_back(proposal_of(place, e, kind_of_link(e)));
     out.back().misfit = fit.misfit;
   }
 }
@@ -176,7 +264,7 @@ std::vector<Proposal> propose_linear(const Plant& plant, const Localisation& pla
   if (candidate.kind == CandidatePlace::Kind::link || above)
     for (const bool spring : {true, false}) {
       const ModelEffect e = link_at(plant, candidate.place, spring);
-      out.push_back(with_effect(place, e, kind_of_link(e)));
+      out.push_back(proposal_of(place, e, kind_of_link(e)));
     }
   return out;
 }

@@ -3,16 +3,17 @@
 #include <vector>
 
 #include "estimator/diagnose/locate/localise.h"
-#include "estimator/diagnose/propose/proposal.h"
+#include "estimator/diagnose/propose/needed_signal.h"
 
 namespace framewatch::estimator {
 
-/// All laws of the catalogue that can act at the `which`-th place of a localisation; at elements
-/// and nodes sorted by the misfit of their scalar fit, best first.
+/// Returns all laws of the catalog that can act at the `which`-th place of a localization. At
+/// elements and nodes they are sorted by the misfit of their scalar fit, best first.
 std::vector<Proposal> propose(const Fitter& fitter, const Localisation& place, std::size_t which);
 
-/// The linear effects beside stiffness and damping of elements that may be at the first place: an
-/// extra mass, a spring or damper between floors or to the ground, rotation of base or frames.
+/// Returns the linear effects, other than stiffness and damping of elements, that are possible at
+/// the first place: an extra mass, a spring or damper between floors or to the ground, rotation of
+/// base or frames.
 std::vector<Proposal> propose_linear(const Plant& plant, const Localisation& place);
 
 }  // namespace framewatch::estimator

@@ -17,11 +17,11 @@ using Eigen::VectorXd;
 constexpr double kComponentLow =
     0.40;  ///< of the sampling rate; component tests excite higher frequencies
 constexpr double kNoiseLow = 0.20;   ///< of the sampling rate
-constexpr double kNoiseHigh = 0.46;  ///< likewise
+constexpr double kNoiseHigh = 0.46;  ///< of the sampling rate
 constexpr double kQuietShare = 0.2;
 constexpr double kMinVariance = 1e-16;  ///< (m/s^2)^2, for exact data
 
-/// Mean of the periodogram between the two shares of the sampling rate, per sample.
+/// Returns the mean of the periodogram between `low` and kNoiseHigh, per sample.
 double high_variance(const VectorXd& block, double low) {
   const Index size = block.size();
   VectorXd tapered = block.array() - block.mean();
@@ -58,7 +58,7 @@ double quiet_noise_variance(const VectorXd& accel, double rate_hz, double low) {
   double log_sum = 0;
   for (std::size_t i = 0; i < kept; ++i) log_sum += levels[i];
   const double mean = log_sum / static_cast<double>(kept);
-  // The quietest fifth of Gaussian estimates lies below their mean: 1.40 standard deviations.
+  // The quietest fifth of Gaussian estimates lies 1.40 standard deviations below their mean.
   const double averaged = static_cast<double>(block) * (kNoiseHigh - low) / 1.94;
   return std::max(kMinVariance, mean / std::max(0.5, 1 - 1.40 / std::sqrt(averaged)));
 }

@@ -8,8 +8,8 @@
 
 namespace framewatch::estimator {
 
-/// out = a b with the instruction set that the machine has (estimator/numeric/kernels.h). a: its
-/// columns beyond the rows of b are ignored; b: a multiple of kLane columns.
+/// Sets out = a b with the machine's instruction set (estimator/numeric/kernels.h). Ignores columns
+/// of a beyond the rows of b. b: a multiple of kLane columns.
 void multiply(const RowMatrix& a, const RowMatrix& b, RowMatrix& out);
 
 /// Sum of the outer products of rows, with the same kernels.
@@ -17,14 +17,15 @@ class RowGram {
  public:
   explicit RowGram(Eigen::Index columns);
 
-  /// Where the caller writes the next rows before add(), from column `first` on: count x columns
-  /// from there. They are zero before it; first: a multiple of kLane. Contents do not persist.
+  /// Returns where the caller writes the next rows before add(): `count` rows, from column `first`
+  /// on. The columns before `first` count as zero; first: a multiple of kLane. Contents do not
+  /// persist.
   Eigen::Block<RowMatrix> rows(Eigen::Index count, Eigen::Index first = 0);
   /// Adds these rows to the sum.
   void add();
-  /// These rows, padded with zeros to whole lanes.
+  /// Returns these rows, padded with zeros to whole lanes.
   const RowMatrix& written() const { return rows_; }
-  /// columns x columns, symmetric.
+  /// Returns the sum: columns x columns, symmetric.
   Eigen::MatrixXd sum() const;
 
  private:

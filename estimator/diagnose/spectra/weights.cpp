@@ -20,13 +20,13 @@ constexpr Index kEndTerms = 4;
 
 namespace {
 
-/// Every end term is a power of the relative frequency, its sign, times a real force (even) or one
-/// of value -j (odd) on each equation.
+/// Every end term is a power of the relative frequency, with this sign. It multiplies a real force
+/// (even) or a force of value -j (odd) on each equation.
 constexpr int kPower[kEndTerms] = {-2, -1, 0, 1};
 constexpr double kSign[kEndTerms] = {1, 1, 1, -1};
 constexpr int kMinPower = 2 * kPower[0], kPowers = 2 * kPower[kEndTerms - 1] - kMinPower + 1;
 
-/// Sums over the bins of the metric's real part (even powers) or imaginary part (odd powers) times
+/// Sums over the bins of the metric's real part (even powers) or imaginary part (odd powers), times
 /// that power of the relative frequency.
 class MetricMoments {
  public:
@@ -49,7 +49,7 @@ class MetricMoments {
     if (++waiting_ == kTogether) add_waiting();
   }
 
-  /// Adds those of the last bins: before between().
+  /// Adds the remaining bins. Call it before between().
   void add_waiting() {
     const auto add = [&](const RowMatrix& factors, const RowMatrix& values, RowMatrix& sum) {
       kernels::in_use->multiply_add(factors.data(), kTogether, static_cast<int>(factors.rows()),
@@ -61,7 +61,7 @@ class MetricMoments {
     waiting_ = 0;
   }
 
-  /// Products of the columns of two end terms.
+  /// Returns the products of the columns of two end terms.
   MatrixXd between(Index a, Index b) const {
     const Index power = kPower[a] + kPower[b] - kMinPower;
     const double* of_power = (power % 2 == 0 ? even_ : odd_).row(power / 2).data();
@@ -149,7 +149,7 @@ void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const 
     }
 }
 
-/// With r the relative frequency the terms are r^-2, -j/r, 1 and j r at every equation.
+/// With r the relative frequency, the terms are r^-2, -j/r, 1 and j r at every equation.
 void Weights::add_shares(Index bin, const RowMatrix& along, RowMatrix& sum) const {
   const Index n = equations();
   const double r = relative_[bin];

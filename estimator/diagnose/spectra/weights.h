@@ -5,29 +5,29 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/spectra/row_gram.h"
-#include "estimator/diagnose/spectra/whitener.h"
+#include "estimator/diagnose/spectra/whiteners.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 
-/// A hidden resonator: the direction of its force and its transmissibility in every bin. Like the
-/// building it is not at rest at the ends of a segment.
+/// A hidden resonator: the direction of its force and its transmissibility in every bin. It may be
+/// in motion at the ends of a segment, like the building.
 struct HiddenOscillator {
   Eigen::VectorXd direction;
   Eigen::VectorXcd transmissibility;
 };
 
-/// The whitened rows of one bin, complex. rows: of every bin, as Weights has them.
+/// Returns the whitened rows of one bin, complex. rows: of all bins, in the order of Weights.
 Eigen::VectorXcd rows_of_bin(const Eigen::Ref<const Eigen::VectorXd>& rows, Eigen::Index bin,
                              Eigen::Index equations);
 
-/// Weights of the equations of one segment, docs/equations.md (33), and the end terms (32) that are
-/// projected out of them. Whitened rows are the real parts, then the imaginary parts of every
-/// equation, bin by bin.
+/// Weights of the equations of one segment, docs/equations.md (33). Projects out the end terms
+/// (32). Whitened rows are ordered bin by bin: the real parts of all equations, then the imaginary
+/// parts.
 class Weights {
  public:
-  /// whitener: inverse of L of every bin, L L^H = N D S D^H. w: rad/s of the bins. read: of
-  /// whiteners of motions that not all are read (ReadMotions); empty where all are.
+  /// whitener: inverse of L of every bin, L L^H = N D S D^H. w: rad/s of the bins. read:
+  /// ReadMotions::read if some motions are not read by any axis, otherwise empty.
   Weights(std::vector<Whitener> whitener, const Eigen::VectorXd& w,
           std::vector<HiddenOscillator> hidden, Eigen::MatrixXd read = {});
 
@@ -37,37 +37,37 @@ class Weights {
     return whitener_[static_cast<std::size_t>(bin)];
   }
 
-  /// Forces on the equations whose whitened rows in a bin, complex, are `rows`.
+  /// Returns the forces on the equations whose whitened rows in a bin, complex, are `rows`.
   Eigen::VectorXcd forces_of(Eigen::Index bin, const Eigen::VectorXcd& rows) const;
 
-  /// Inverse of the equations' noise covariance in a bin: whitener^H whitener.
+  /// Returns the inverse of the equations' noise covariance in a bin: whitener^H whitener.
   Eigen::MatrixXcd metric(Eigen::Index bin) const { return whitener(bin).metric(); }
 
-  /// Forces, equations x bins, as whitened rows.
+  /// Returns forces, equations x bins, as whitened rows.
   Eigen::VectorXd whitened(const Eigen::MatrixXcd& forces) const;
-  /// whitener^H of rows: equations x bins.
+  /// Returns whitener^H rows: equations x bins.
   Eigen::MatrixXcd turned_back(const Eigen::VectorXd& rows) const;
 
-  /// Number of end terms. Their columns, each of unit length, are E: rows x ends().
+  /// Returns the number of end terms. Their columns, each of unit length, are E: rows x ends().
   Eigen::Index ends() const { return scale_.size(); }
   /// E'E.
   const Eigen::MatrixXd& ends_square() const { return square_; }
-  /// left E of one bin; left: any number of rows x the bin's rows.
+  /// Returns left E of one bin. left: any number of rows x the bin's rows.
   RowMatrix times_ends(Eigen::Index bin, const RowMatrix& left) const;
-  /// rows - E (E'E)^-1 E' rows.
+  /// Returns rows - E (E'E)^-1 E' rows.
   Eigen::VectorXd without_ends(const Eigen::VectorXd& rows) const;
 
-  /// X, the whitened rows of one bin under unit forces on each of its n equations: n real forces,
-  /// then n of value -j. transposed: X'. Padded with zeros to whole lanes.
+  /// Sets `out` to X, the whitened rows of one bin under unit forces on each of its n equations: n
+  /// real forces, then n of value -j. transposed: X'. Padded with zeros to whole lanes.
   void put_unit_forces(Eigen::Index bin, bool transposed, RowMatrix& out) const;
-  /// sum += F along; F': the end terms of a bin as such forces, so that E = X F'. along: X' times
-  /// any matrix, 2 n rows.
+  /// Adds F along to `sum`. F' holds the end terms of a bin as unit forces, so that E = X F'.
+  /// along: X' times any matrix, 2 n rows.
   void add_shares(Eigen::Index bin, const RowMatrix& along, RowMatrix& sum) const;
 
  private:
-  /// Whether a bin's whitener is: not where motions are not all read.
+  /// Returns true if a bin's whitener is triangular: all motions are read.
   bool is_triangular() const { return read_.size() == 0; }
-  /// F' size; size: of the unscaled terms.
+  /// Returns F' size. size: of the unscaled terms.
   Eigen::VectorXd shared(Eigen::Index bin, const Eigen::VectorXd& size) const;
 
   std::vector<Whitener> whitener_;

@@ -3,14 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 
+#include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/law/hysteretic_force.h"
-#include "estimator/diagnose/law/slack.h"
+#include "estimator/diagnose/law/law.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 constexpr double kTailPower = 0.05;  ///< share of a force's power below its band, and above it
 
@@ -36,7 +43,8 @@ double clipping_level(const std::vector<RecordSegment>& segments, Eigen::Index a
   return level;
 }
 
-/// Size and band of an arbitrary force: what nothing else explains of the first segment.
+/// Sets size and band of an arbitrary force: the part of the first segment that no other effect
+/// explains.
 void set_broadband(Effect& out, const Plant& plant, const std::vector<RecordSegment>& segments,
                    const ModelEffect& e, const Model& model) {
   Model rest = model;
@@ -124,7 +132,7 @@ void set_friction(const ModelEffect& e, Effect& out) {
   if (e.parameters.size() > 4) out.set("presliding_m", p(4));
 }
 
-/// At a deformation of a whole frame: shares of the mean stiffness.
+/// At a deformation of a whole frame, as shares of the mean stiffness.
 void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e, Effect& out) {
   double k = 0;
   const std::vector<LawPort> ports = law_ports(plant, model, e);
@@ -132,7 +140,8 @@ void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e,
     k += model.theta[port.element] / static_cast<double>(ports.size());
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   const double share = -p(0) / (k * e.deformation), exponent = p(1);
-  // No element loses more than all it has: the same law at a smaller deformation.
+  // An element cannot lose more than all its stiffness, so a larger share becomes the same law at a
+  // smaller deformation.
   const double nearer = share > 1 && exponent > 1 ? std::pow(share, -1 / (exponent - 1)) : 1;
   out.set("softening", share * std::pow(nearer, exponent - 1));
   out.set("at_m", nearer * e.deformation);
@@ -141,7 +150,8 @@ void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e,
   if (e.parameters.size() > AmplitudeIndex::slip) out.set("slip", p(AmplitudeIndex::slip));
 }
 
-/// Slope of a spring's cubic or quadratic part, whatever its shape: at the largest deformation.
+/// Returns the force of a spring's cubic or quadratic part at the largest deformation, for any
+/// shape.
 double curved_force(const ModelEffect& e) {
   if (e.form == LawForm::power) return e.parameters[0].plain();
   Eigen::VectorXd d(1);
@@ -152,7 +162,7 @@ double curved_force(const ModelEffect& e) {
   return at_end - 1e3 * law_force(e.law(0), d, none, 1)[0];
 }
 
-/// Effects of elements; others are left as they are.
+/// Sets the values of effects of elements. Leaves other effects unchanged.
 void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   switch (out.kind) {
@@ -200,7 +210,8 @@ void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
   }
 }
 
-/// Linear effects that add mass, stiffness or damping; others are left as they are.
+/// Sets the values of linear effects that add mass, stiffness or damping. Leaves other effects
+/// unchanged.
 void set_linear_values(const ModelEffect& e, Effect& out) {
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   switch (out.kind) {
@@ -288,6 +299,45 @@ Effect catalogue_effect(const Plant& plant, const std::vector<RecordSegment>& se
       break;
   }
   return out;
+}
+
+void set_errors(const Fitter& fitter, const Model& model,
+                const std::vector<Eigen::MatrixXcd>& motion, std::vector<FoundEffect>& effects) {
+  if (effects.empty()) return;
+  std::vector<Whitened> systems = fitter.systems(model, motion, forcing_of(model));
+  if (systems.empty()) return;
+  const Linearised at = fitter.linearise(model, std::move(systems), thorough(model, 0));
+  MatrixXd normal = normal_equations(at, fitter.within()).normal;
+  normal.diagonal() += at.prior;
+  const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  const Ldlt factor(scaled);
+  for (FoundEffect& found : effects) {
+    if (found.ramp_mps3.size() > 0) continue;
+    const VectorXd value = catalogue_values(fitter.plant(), fitter.segments(), found, model);
+    MatrixXd jacobian = MatrixXd::Zero(value.size(), normal.cols());
+    for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
+      const Unknown& unknown = at.unknowns[u];
+      const bool parameter = unknown.kind == Unknown::Kind::parameter ||
+                             unknown.kind == Unknown::Kind::record_parameter;
+      const bool axis = unknown.kind == Unknown::Kind::gain || unknown.kind == Unknown::Kind::clock;
+      if (!(parameter && unknown.index == found.index) &&
+          !(axis && found.index < 0 && unknown.index == found.chosen.place.channel))
+        continue;
+      constexpr double kPart = 0.05;  // of the unknown's unit, for the derivative
+      Model moved = model;
+      set_value(moved, unknown, value_of(model, unknown) + kPart);
+      jacobian.col(static_cast<Index>(u)) =
+          (catalogue_values(fitter.plant(), fitter.segments(), found, moved) - value) / kPart;
+    }
+    // Errors grow in proportion to the misfit over noise.
+    const MatrixXd turned = scale.asDiagonal() * jacobian.transpose();
+    const VectorXd variance =
+        0.5 * at.level * (jacobian * (scale.asDiagonal() * factor.solve(turned))).diagonal();
+    found.std_error.clear();
+    for (const double v : variance) found.std_error.push_back(std::sqrt(std::max(v, 0.0)));
+  }
 }
 
 }  // namespace framewatch::estimator

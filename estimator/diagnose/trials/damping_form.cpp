@@ -11,7 +11,7 @@
 #include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/model/modal_damping.h"
 #include "estimator/diagnose/trials/linear_gains.h"
-#include "estimator/diagnose/trials/needless.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -21,16 +21,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kMisfit = 1.05;      ///< above it there is something to explain
-constexpr double kNoRatio = 1e-4;     ///< below it there is none
+constexpr double kMisfit = 1.05;      ///< below it there is nothing to explain
+constexpr double kNoRatio = 1e-4;     ///< below it a ratio counts as zero
 constexpr double kDamperStep = 0.05;  ///< of the largest dashpot of the design
 constexpr std::size_t kDampersTried = 4;
-constexpr double kStillFalls = 0.99;  ///< cost after a fit over that before: it goes on
-constexpr int kTimes = 4;             ///< at most
+constexpr double kStillFalls =
+    0.99;                  ///< cost after a fit over that before, below which fits continue
+constexpr int kTimes = 4;  ///< largest number of fits
 constexpr int kStepsWith = 10, kStepsWithout = 8;
 
-/// By how much the cost must fall for one value: half the logarithm of the number of data, times
-/// what the misfit exceeds noise by.
+/// Returns the fall of the cost that justifies one value: half the logarithm of the number of data,
+/// times the ratio of the misfit to noise.
 double price_of(const Fitter& fitter, const FitResult& fit) {
   const double data = fitter.expected(fit.model);
   return 0.5 * std::log(data) * std::max(1.0, fit.total_misfit() / data);
@@ -45,17 +46,17 @@ void hold_at_zero(Model& model, std::size_t effect) {
   model.effects[effect].parameters[0].free = false;
 }
 
-/// A model without some ratios, and where a quadratic model of the cost says that its fit ends.
-struct Fewer {
+/// A model without some ratios, at the minimum that a quadratic model of the cost predicts.
+struct FewerRatios {
   Model model;
   std::size_t removed = 0;
 };
 
-/// Without the ratios that are not worth their price, the one that costs least first, all else
-/// fitted again.
-Fewer without_needless(const Fitter& fitter, const std::vector<std::size_t>& ratios,
-                       const FitResult& now) {
-  Fewer out{now.model};
+/// Removes the ratios that reduce the cost by less than their price, the least useful first, and
+/// adjusts everything else.
+FewerRatios without_redundant(const Fitter& fitter, const std::vector<std::size_t>& ratios,
+                              const FitResult& now) {
+  FewerRatios out{now.model};
   std::vector<Whitened> systems = fitter.systems(now.model, now.motion, forcing_of(now.model));
   if (systems.empty()) return out;
   const Linearised at = fitter.linearise(now.model, std::move(systems), thorough(now.model, 0));
@@ -98,9 +99,10 @@ Fewer without_needless(const Fitter& fitter, const std::vector<std::size_t>& rat
   return out;
 }
 
-/// Goes on without the ratios that are not worth their price.
-void remove_needless(const Fitter& fitter, const std::vector<std::size_t>& ratios, FitResult& now) {
-  const Fewer fewer = without_needless(fitter, ratios, now);
+/// Refits without the ratios that reduce the cost by less than their price.
+void remove_redundant_ratios(const Fitter& fitter, const std::vector<std::size_t>& ratios,
+                             FitResult& now) {
+  const FewerRatios fewer = without_redundant(fitter, ratios, now);
   if (fewer.removed == 0) return;
   FitResult without = fitter.fit(fewer.model, now.motion, thorough(fewer.model, kStepsWithout));
   const double price = static_cast<double>(fewer.removed) * price_of(fitter, now);
@@ -185,10 +187,10 @@ void settle_damping(const Fitter& fitter, FitResult with, FitResult& now) {
   const std::vector<std::size_t> ratios =
       modes_in_band(fitter.plant(), now.model, fitter.segments());
   if (with.good && with.cost < now.cost - price_of(fitter, with)) {
-    remove_needless(fitter, ratios, with);
+    remove_redundant_ratios(fitter, ratios, with);
     if (with.cost < now.cost) now = std::move(with);
   } else if (has_modal_damping(now.model)) {
-    remove_needless(fitter, ratios, now);
+    remove_redundant_ratios(fitter, ratios, now);
   }
 }
 

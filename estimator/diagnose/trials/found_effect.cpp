@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/trials/trial_relations.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr double kSame = 8;        ///< difference of costs that does not decide between names
-constexpr double kMargin = 20;     ///< difference that makes a doubt smaller by the factor e
+constexpr double kMargin = 20;     ///< difference that reduces the doubt by the factor e
 constexpr double kLargest = 1e3;   ///< without a rival
 constexpr double kSurest = 0.999;  ///< confidence
 

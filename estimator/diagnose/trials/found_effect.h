@@ -13,22 +13,24 @@ inline constexpr double kDoubtful = 0.5;
 struct FoundEffect {
   Trial chosen;
   std::vector<Trial> alternatives;  ///< best first
-  std::vector<EffectKind> like;     ///< names that the data cannot tell from it
+  std::vector<EffectKind> like;     ///< names that the data cannot distinguish from it
   double confidence = 0;            ///< in the name, 0 to 1
-  /// More than noise is left: the effect differs from the law of its name, or another one acts too.
+  /// More than noise is left: the effect differs from the law of its name, or another effect acts
+  /// too.
   bool approximate = false;
-  bool nearest = false;  ///< explains too little to be it: named in doubt, because nothing else is
+  bool nearest =
+      false;  ///< explains too little; named with low confidence because no other law comes nearer
   /// Held-out gap of the models with the effects before this one, and with it.
   double before = 0, after = 0;
   int index = -1;                 ///< among the model's effects; -1: gain or clock of an axis
   std::vector<double> ramp_mps3;  ///< bias_drift: slope in every segment
   std::vector<double> ramp_from_s;
   std::vector<double> drift_rms_mps2;  ///< of that drift about its mean; empty: of the ramp
-  std::vector<double> std_error;       ///< of the catalogue's parameters; 0: not known
+  std::vector<double> std_error;       ///< of the catalog's parameters; 0: unknown
 };
 
-/// The best of the trials, which come best first, as an effect: with the others, the names that the
-/// data cannot tell from its own, and the confidence by the margin to the best that contradicts it.
+/// Returns the best trial as an effect. trials: best first. Sets the alternatives, the names that
+/// the data cannot distinguish from its name, and the confidence from the margin to the best rival.
 FoundEffect effect_of(const std::vector<Trial>& trials);
 
 }  // namespace framewatch::estimator

@@ -11,13 +11,14 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kExplained = 0.9;  ///< of the masses' excess cost, by one effect
-constexpr double kAsWell = 0.8;     ///< of the best one's gain: the effect remains ambiguous
-constexpr double kPromises = 0.5;   ///< of what is needed, by one step
+constexpr double kAsWell =
+    0.8;  ///< of the best one's gain, above which the effect remains ambiguous
+constexpr double kPromises = 0.5;  ///< of the needed gain, by one step
 constexpr std::size_t kTried = 8;
 constexpr std::size_t kMaxPlaces = 64;  ///< of a large building, likeliest first
 constexpr double kBeyond = 2;           ///< standard deviations of a frame's mass
 
-/// Whether an extra mass lies within the tolerance of the masses of all its frames.
+/// Returns true if an extra mass lies within the tolerance of the masses of all its frames.
 bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
   if (effect.form != LawForm::mass) return false;
   const std::vector<int> frames = frames_at(s, effect.place.crossing);
@@ -26,8 +27,8 @@ bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
   });
 }
 
-/// The linear effects that one step of the fit finds to do away with enough, best first. located:
-/// whose places are tried.
+/// Returns the linear effects that gain enough in one step of the fit, best first. located: the
+/// places to try.
 std::vector<Proposal> promising(const TrialContext& context, const Located& located,
                                 double needed) {
   const Plant& plant = context.fitter.plant();

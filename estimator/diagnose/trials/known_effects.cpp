@@ -13,13 +13,13 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr double kBilinear = 40;  ///< exponent of hysteresis with a corner
+constexpr double kBilinear = 40;  ///< exponent of bilinear hysteresis
 
 LawParameter sized(double value) {
   return linear_parameter(value, 0.02 * std::max(std::abs(value), 1e-12));
 }
 
-/// Largest measured deformation and rate where a law acts.
+/// Sets the scales to the largest measured deformation and rate where a law acts.
 void set_scales(const Plant& plant, const std::vector<RecordSegment>& segments, ModelEffect& e) {
   e.deformation = e.rate = 1e-12;
   for (const LawPort& port : law_ports(plant, initial_model(plant), e))
@@ -32,7 +32,7 @@ void set_scales(const Plant& plant, const std::vector<RecordSegment>& segments, 
     }
 }
 
-/// Sets an error of an axis; false when the effect is another one.
+/// Sets an error of an axis. Returns false if the effect is not an error of an axis.
 bool add_axis_error(const Effect& effect, Model& model) {
   const int axis = effect.place.channel;
   switch (effect.kind) {
@@ -108,7 +108,7 @@ LawForm form_of(const Effect& effect) {
   }
 }
 
-/// Power law, or the negative stiffness of gravity (P-Delta).
+/// Sets a power law, or the negative stiffness of gravity (P-Delta).
 void set_power(const Plant& plant, const Effect& effect, ModelEffect& e) {
   const double d = e.deformation;
   if (effect.kind == EffectKind::p_delta) {
@@ -146,11 +146,11 @@ void set_hysteresis(const Effect& effect, ModelEffect& e) {
                     bounded_parameter(value("spread"), 0.02, 0, 0.98), loss("strength_loss")};
     return;
   }
-  const bool corner = effect.kind == EffectKind::bilinear_hysteresis;
+  const bool bilinear = effect.kind == EffectKind::bilinear_hysteresis;
   e.parameters =
-      hysteretic_shape(value("kh_npm"), value("dy_m"), corner ? kBilinear : value("exponent"),
-                       corner ? 0.5 : value("beta"), d);
-  if (corner) return;
+      hysteretic_shape(value("kh_npm"), value("dy_m"), bilinear ? kBilinear : value("exponent"),
+                       bilinear ? 0.5 : value("beta"), d);
+  if (bilinear) return;
   if (effect.kind == EffectKind::pinching) {
     e.parameters.push_back(bounded_parameter(value("slip_ratio"), 0.02, 0.0, 0.99));
     e.parameters.push_back(logarithmic_parameter(value("slip_width"), 0.05, 50));
@@ -210,7 +210,7 @@ void set_harmonic(const std::vector<RecordSegment>& segments, const Effect& effe
   }
 }
 
-/// Laws of elements; others are left as they are.
+/// Sets the parameters of element laws. Leaves other effects unchanged.
 void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>& segments,
                             const Effect& effect, ModelEffect& e) {
   const auto value = [&](const char* key) { return effect.value(key); };
@@ -260,7 +260,7 @@ void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>
   }
 }
 
-/// Every other effect of a model.
+/// Sets the parameters of all other effects of a model.
 void set_other_parameters(const std::vector<RecordSegment>& segments, const Effect& effect,
                           ModelEffect& e) {
   const auto value = [&](const char* key) { return effect.value(key); };

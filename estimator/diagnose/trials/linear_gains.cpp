@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kTogether = 64;  ///< effects whose derivatives are in memory at once
 
-/// The gains of effects whose derivatives are taken together, none of them there.
+/// Returns the gains of effects whose derivatives are computed together, each at size zero.
 std::vector<LinearGain> gains_of(const TrialContext& c, std::span<const ModelEffect> effects) {
   std::vector<LinearGain> out(effects.size());
   Model model = c.now.model;
@@ -55,7 +55,7 @@ std::vector<LinearGain> gains_of(const TrialContext& c, std::span<const ModelEff
     const double whole = equations.normal(added[i], added[i]);
     const double alone = whole - cross.col(column).dot(solved.col(column));
     const double pull = right[added[i]] - cross.col(column).dot(step);
-    if (!(alone > 1e-9 * whole)) continue;  // the building's own unknowns do the same
+    if (!(alone > 1e-9 * whole)) continue;  // the building's own unknowns have the same influence
     const double scale = at.unknowns[static_cast<std::size_t>(added[i])].scale;
     out[effect[i]] = {pull * pull / alone, scale * pull / alone};
   }

@@ -2,18 +2,18 @@
 
 #include <vector>
 
-#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 
-/// What one step of the fit from the present model makes of a linear effect that it does not have.
+/// Effect of one step of the fit from the present model with one more linear effect.
 struct LinearGain {
-  double cost = 0;   ///< by which the cost falls more than without the effect
+  double cost = 0;   ///< additional fall of the cost due to the effect
   double value = 0;  ///< of the effect's first parameter after the step
 };
 
-/// Of every effect, alone. effects: none of them a law of elements, zero when their first parameter
-/// is.
+/// Returns the gain of each effect alone. effects: not element laws; each has no influence if its
+/// first parameter is zero.
 std::vector<LinearGain> linear_gains(const TrialContext& context,
                                      const std::vector<ModelEffect>& effects);
 

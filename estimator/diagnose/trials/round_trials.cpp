@@ -19,8 +19,8 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-/// Frames that bend turn at every floor. Where not every floor is read, a force at the top explains
-/// more of that than a moment at the base: the latter is tried all the same.
+/// Adds moments at the base. Bending frames rotate at every floor, and if some floors are not read,
+/// a force at the top explains more of that than a moment at the base.
 void add_moments(const std::vector<Localisation>& all, std::vector<Localisation>& places) {
   const auto is_moment = [](const Localisation& place) {
     return place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
@@ -29,7 +29,7 @@ void add_moments(const std::vector<Localisation>& all, std::vector<Localisation>
   std::copy_if(all.begin(), all.end(), std::back_inserter(places), is_moment);
 }
 
-/// The elements that a law found before acts on.
+/// Returns the elements on which an earlier law acts.
 std::vector<CandidatePlace> places_of_law(const Located& located, const EffectPlace& law,
                                           const Structure& structure) {
   std::vector<CandidatePlace> out;
@@ -45,7 +45,7 @@ std::vector<CandidatePlace> places_of_law(const Located& located, const EffectPl
   return out;
 }
 
-/// The misfit where that law may be any.
+/// Localizes with arbitrary signals at the elements of that law.
 Localisation localise_law(const TrialContext& context, const Located& located,
                           const std::vector<CandidatePlace>& own) {
   for (const Localisation& l : located.places)
@@ -127,13 +127,14 @@ std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Loca
   whole.frame = place->candidate_places.front().place.frame;
   const Structure& structure = context.fitter.plant().structure;
   const bool along_x = structure.direction(whole.frame) == Direction::x;
-  if ((along_x ? structure.n() : structure.m()) < 2) return {};  // that of the building
+  if ((along_x ? structure.n() : structure.m()) < 2)
+    return {};  // then it equals the law of the building
   return try_effects(context, amplitude_proposals(context.fitter, *place, whole));
 }
 
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,
                                    double needed, double& bound) {
-  context.progress("two places");
+  context.progress("pairs of places");
   const Localisation& best = located.places.front();
   const std::vector<Localisation> pairs =
       locate_pairs(context.fitter, context.now, located.once, context.parallel);

@@ -2,24 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
-#include "estimator/diagnose/fit/onset.h"
-#include "estimator/diagnose/trials/sharpened.h"
+#include "estimator/diagnose/fit/free_run_start.h"
+#include "estimator/diagnose/locate/locate.h"
+#include "estimator/diagnose/propose/name_of_fit.h"
+#include "estimator/diagnose/trials/refit.h"
+#include "estimator/diagnose/trials/trial_names.h"
+#include "estimator/diagnose/trials/trials.h"
 
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kExplains = 0.97;  ///< share of the misfit beyond noise, else a law is not named
-constexpr double kExplainsMost = 0.9;  ///< the same where the rest is within chance
-constexpr double kNearest = 0.8;       ///< the same of the nearest law
-constexpr double kSharp = 0.995;       ///< share above which a fit need not be sharpened
-constexpr double kBlunt = 0.4;         ///< share below which it is not worth it
-constexpr std::size_t kSharpened = 3;
-/// Times the best cost, or what it has beyond chance: trials above either are not sharpened.
+constexpr std::size_t kMaxRivals = 3;
+constexpr double kFarBehind = 4;   ///< times the cost of the chosen law
+constexpr double kMinLeft = 0.02;  ///< of the design's stiffness
+
+struct Rival {
+  Trial trial;
+  FitResult fit;
+};
+
+std::vector<const Trial*> rivals_of(const FoundEffect& effect) {
+  std::vector<const Trial*> out;
+  for (const Trial& t : effect.alternatives) {
+    const bool tried = t.outcome == TrialOutcome::fitted || t.outcome == TrialOutcome::screened_out;
+    const bool again =
+        std::any_of(out.begin(), out.end(), [&](const Trial* o) { return o->kind == t.kind; });
+    if (!tried || again || t.second || t.kind == effect.chosen.kind ||
+        !(t.place == effect.chosen.place) || t.cost > kFarBehind * effect.chosen.cost ||
+        t.model.effects.empty() || !t.model.effects.back().element_law())
+      continue;
+    out.push_back(&t);
+    if (out.size() == kMaxRivals) break;
+  }
+  return out;
+}
+
+constexpr double kExplains =
+    0.97;  ///< share of the misfit beyond noise that a law must explain to be named
+constexpr double kExplainsMost = 0.9;  ///< that share if the rest is within chance
+constexpr double kNearest = 0.8;       ///< that share for the nearest law
+constexpr double kSharp = 0.995;       ///< share above which a fit need not be refined
+constexpr double kBlunt = 0.4;         ///< share below which refining does not pay
+constexpr std::size_t kRefined = 3;
+/// Times the best cost, or its excess beyond chance: trials above either are not refined.
 constexpr double kHopeless = 4;
 constexpr double kBehind = 2;    ///< reductions that are more than chance
 constexpr double kWorse = 1.02;  ///< misfit of a record, relative
-/// By how much an arbitrary force must be better than a law, of the misfit beyond noise.
+/// Share of the misfit beyond noise by which an arbitrary force must be better than a law.
 constexpr double kArbitraryPrice = 1 - kExplains;
 
 bool is_arbitrary_force(const Trial& t) {
@@ -32,31 +64,32 @@ double limit_of(const Trial& best, double enough) {
   return std::min(by_cost, enough + kHopeless * std::max(0.0, best.cost - enough));
 }
 
-/// Fits the leading trials on with everything free. enough: cost above which more than chance is
-/// left; needed: a reduction that is more than chance. Those far behind the best one are no rivals.
-void sharpen(const TrialContext& context, double enough, double needed,
-             std::vector<Trial>& trials) {
+/// Refines the leading trials with everything free. enough: cost above which more than chance is
+/// left; needed: a reduction that is more than chance. Trials far behind the best one are not
+/// rivals.
+void refine_leading(const TrialContext& context, double enough, double needed,
+                    std::vector<Trial>& trials) {
   const Trial& best = trials.front();
   const bool done = best.cost <= enough && !is_arbitrary_force(best);
   const double limit = done ? best.cost + kBehind * needed : limit_of(best, enough);
-  run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
+  run_all(context.parallel, static_cast<int>(std::min(kRefined, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
     if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit) return;
     const bool late = ends_with_harmonic(t.model) && t.cost > enough;
-    if (t.sharpened || !(late || t.fraction < kSharp)) return;
-    t = sharpened(context, t, t.model);
-    t.sharpened = true;
+    if (t.refined || !(late || t.fraction < kSharp)) return;
+    t = refined(context, t, t.model);
+    t.refined = true;
   });
 }
 
-/// Fits the leading trials again from a fit to the record with the weakest effect alone.
+/// Refits the leading trials, starting from a fit to the record with the weakest effect.
 void approach(const TrialContext& context, double enough, std::vector<Trial>& trials) {
   const double limit = limit_of(trials.front(), enough);
-  run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
+  run_all(context.parallel, static_cast<int>(std::min(kRefined, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
     if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit || t.approached)
       return;
-    t = sharpened(context, t, fitted_to_the_weakest(context, t.model));
+    t = refined(context, t, fitted_to_the_weakest(context, t.model));
     t.approached = true;
   });
 }
@@ -102,7 +135,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
   const FitResult& now = context.now;
   const double to_explain = now.cost - bound;
   // Penalties: two effects must beat one by more than chance, an arbitrary force must beat a law,
-  // and every fitted value must explain more than a value explains of noise.
+  // and every fitted value must explain more than it would explain of noise.
   const double of_value = 0.5 * std::log(context.fitter.expected(now.model));
   const auto price = [&](const Trial& t) {
     const bool arbitrary = t.model.effects.size() > now.model.effects.size() &&
@@ -119,7 +152,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
     for (Trial& t : trials) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1e-9);
   };
   rank();
-  sharpen(context, bound + needed, needed, trials);
+  refine_leading(context, bound + needed, needed, trials);
   rank();
   if (trials.front().fraction < kExplains) {
     approach(context, bound + needed, trials);
@@ -131,6 +164,66 @@ bool select_trial(const TrialContext& context, double bound, double needed,
   const bool most = best.fraction >= (component ? kExplainsMost : kExplains) ||
                     (best.fraction >= kExplainsMost && best.cost - bound < needed);
   return most && now.cost - best.cost > needed && !worsens(best, now, needed);
+}
+
+bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitResult& now) {
+  if (effect.index < 0 || effect.chosen.second) return false;
+  const auto index = static_cast<std::size_t>(effect.index);
+  const std::vector<const Trial*> others = rivals_of(effect);
+  if (!now.model.effects[index].element_law() || others.empty()) return false;
+  const Plant& plant = context.fitter.plant();
+  FitResult without = now;
+  without.model.effects.resize(index);
+  const TrialContext named{context.fitter, without, context.without, context.parallel,
+                           context.progress};
+  const auto as_trial = [&](const FitResult& fit) {
+    Trial t = effect.chosen;
+    t.kind = name_of_fit(fit.model.effects[index], context.fitter.segments().front());
+    t.cost = fit.cost;
+    t.misfit = fit.misfit;
+    t.model = fit.model;
+    return t;
+  };
+  std::vector<Rival> all(others.size() + 1);
+  run_all(context.parallel, static_cast<int>(others.size()), [&](int i) {
+    const Trial& t = *others[static_cast<std::size_t>(i)];
+    Model model = now.model;
+    model.effects[index] = t.model.effects.back();
+    model.theta =
+        (model.theta + t.model.theta - effect.chosen.model.theta).cwiseMax(kMinLeft * plant.design);
+    free_shapes(model);
+    FitResult fit = fit_to_the_end(context.fitter, model, {});
+    if (fit.good) all[static_cast<std::size_t>(i)] = {as_trial(fit), std::move(fit)};
+  });
+  all.back() = {as_trial(now), now};
+  std::erase_if(all, [&](const Rival& r) {
+    return !r.fit.good || (&r != &all.back() && !may_be_named(named, r.trial));
+  });
+  const double of_value = 0.5 * std::log(context.fitter.expected(now.model));
+  const auto price = [&](const Rival& r) {
+    return r.trial.cost + of_value * fitted_values(r.trial.model);
+  };
+  const Trial own = all.back().trial;
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const Rival& a, const Rival& b) { return price(a) < price(b); });
+  const bool another = all.front().trial.kind != own.kind;
+  std::vector<Trial> trials;
+  for (Rival& r : all) trials.push_back(r.trial);
+  FoundEffect fresh = effect_of(trials);
+  fresh.confidence = std::min(fresh.confidence, effect.confidence);
+  if (!another) {
+    effect.confidence = fresh.confidence;
+    for (const EffectKind kind : fresh.like)
+      if (std::find(effect.like.begin(), effect.like.end(), kind) == effect.like.end())
+        effect.like.push_back(kind);
+    return false;
+  }
+  fresh.index = effect.index;
+  fresh.alternatives.insert(fresh.alternatives.end(), effect.alternatives.begin(),
+                            effect.alternatives.end());
+  now = std::move(all.front().fit);
+  effect = std::move(fresh);
+  return true;
 }
 
 }  // namespace framewatch::estimator

@@ -9,26 +9,26 @@
 #include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
-#include "estimator/diagnose/trials/sharpened.h"
+#include "estimator/diagnose/trials/refit.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/trials/trial_names.h"
-#include "estimator/diagnose/trials/trial_relations.h"
 #include "estimator/diagnose/trials/trials.h"
 
 namespace framewatch::estimator {
 namespace {
 
-/// Indices of laws, in the order in which a model has their effects.
+/// Indices of laws, in the order of their effects in a model.
 using Members = std::vector<std::size_t>;
 
 constexpr std::size_t kMaxTried = 9, kFewestTried = 3, kMaxCauses = 3;
-constexpr std::size_t kMaxWork = 60;  ///< laws times equations
-constexpr std::size_t kKept = 3;      ///< sets of one size that lead to larger ones
-constexpr std::size_t kFinished = 6;  ///< that are fitted to their end
-constexpr double kTakes = 0.9;        ///< gap with one cause over that without any, at most
-constexpr double kTakesToo = 0.95;    ///< gap with one more: a tenth of the misfit's power
-constexpr double kNearly = 1.1;       ///< gap over the best's, of a set that does nearly as well
-constexpr double kMinShare = 0.1;     ///< of the design, of a start's stiffness or damping
-constexpr double kLittle = 0.1;       ///< of the size that an effect has in its trial
+constexpr std::size_t kMaxWork = 60;   ///< laws times equations
+constexpr std::size_t kKept = 3;       ///< sets of one size that are extended
+constexpr std::size_t kFinished = 6;   ///< sets that are fitted to convergence
+constexpr double kWithOneCause = 0.9;  ///< largest gap with one cause over that without any
+constexpr double kWithOneMore = 0.95;  ///< largest gap with one more: a tenth of the misfit's power
+constexpr double kNearly = 1.1;    ///< gap over the best's, below which a set does nearly as well
+constexpr double kMinShare = 0.1;  ///< of the design, of a start's stiffness or damping
+constexpr double kLittle = 0.1;    ///< of the size that an effect has in its trial
 constexpr int kScreenSteps = 4, kJointSteps = 5, kNoneSteps = 8;
 
 struct CauseSet {
@@ -37,11 +37,11 @@ struct CauseSet {
   std::vector<Gap> gaps;
   double held_out = std::numeric_limits<double>::infinity();  ///< mean gap
   double all = std::numeric_limits<double>::infinity();       ///< of all records
-  bool named = false;                                         ///< its effects may have their names
+  bool named = false;                                         ///< its names are allowed
 };
 
-/// Whether hysteresis that got no free run at a place is of another name than the one that did:
-/// beside other causes it may do better.
+/// Returns true if `other` is hysteresis that got no free run because `fitted` was better at its
+/// place. With other causes it may do better.
 bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& other) {
   const auto hysteretic = [&](const Trial& t) {
     return t.model.effects.size() > c.now.model.effects.size() &&
@@ -51,7 +51,7 @@ bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& o
          hysteretic(fitted) && hysteretic(other);
 }
 
-/// Laws that may be causes, best first, one of every name and place.
+/// Returns laws that may be causes, best first, one of every name and place.
 std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
   const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
   const std::size_t most = std::clamp(kMaxWork / equations, kFewestTried, kMaxTried);
@@ -65,20 +65,20 @@ std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Tria
       return o->kind == t.kind && o->place == t.place;
     });
     if (anything || again || is_excluded(c, t.kind)) continue;
-    // What acts on the whole building is rarely the best alone, and often beside others.
+    // Effects of the whole building are rarely the best alone, but often act together with others.
     if (out.size() < most || otherwise || t.place.kind == PlaceKind::building) out.push_back(&t);
   }
   return out;
 }
 
-/// What an effect that is added to a model begins with.
+/// Start values of an effect that is added to a model.
 enum class Start {
-  changed,  ///< stiffnesses and dampings that change as they did with the trial
+  changed,  ///< stiffnesses and dampings changed by what the trial changed
   trial,    ///< those of the trial
-  little,   ///< those of the model, and little of the effect
+  little,   ///< those of the model, and a small amplitude of the effect
 };
 
-/// A model with the effect of a trial.
+/// Returns a model with the effect of a trial added.
 Model extended(const TrialContext& c, const Model& model, const Trial& t, Start start) {
   Model out = model;
   const auto known = static_cast<std::ptrdiff_t>(c.now.model.effects.size());
@@ -123,14 +123,14 @@ class Selection {
     CauseSet best = none_;
     std::vector<CauseSet> kept{none_};
     for (std::size_t size = 1; size <= kMaxCauses && !kept.empty(); ++size) {
-      context_.progress("several causes together");
+      context_.progress("several causes");
       kept = larger(kept);
       const auto leads =
           std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });
       if (leads != kept.end() && is_worth(*leads, best)) best = *leads;
       if (kept.size() > kKept) kept.resize(kKept);
     }
-    return result(without_needless(std::move(best)));
+    return result(without_redundant(std::move(best)));
   }
 
  private:
@@ -151,13 +151,14 @@ class Selection {
 
   CauseSet finished(const CauseSet& s) const {
     std::vector<Model> starts{s.model};
-    if (std::optional<Model> again = begun_anew(s)) starts.push_back(std::move(*again));
+    if (std::optional<Model> again = restarted(s)) starts.push_back(std::move(*again));
     return judged(s.members, free_run_fit(train_, starts, kJointSteps, true).model);
   }
 
-  /// The set's model where shapes that have run into their bounds are those of the trials again:
-  /// the way there leads past others. Empty where none has.
-  std::optional<Model> begun_anew(const CauseSet& s) const {
+  /// Returns the set's model with the trials' shapes where shapes have reached their bounds,
+  /// because the fit may have passed other minima on the way. Returns nullopt if no shape has
+  /// reached a bound.
+  std::optional<Model> restarted(const CauseSet& s) const {
     Model out = s.model;
     bool any = false;
     for (std::size_t i = 0; i < s.members.size(); ++i) {
@@ -174,7 +175,7 @@ class Selection {
     return any ? std::optional(out) : std::nullopt;
   }
 
-  /// Names that stay, and no record whose gap grows.
+  /// Returns true if the names are allowed and no record's gap grows.
   bool may_lead(const CauseSet& s) const {
     if (!s.named || s.gaps.size() != none_.gaps.size()) return false;
     for (std::size_t r = 0; r < s.gaps.size(); ++r)
@@ -182,12 +183,12 @@ class Selection {
     return true;
   }
 
-  /// Whether a set is worth the causes that it has more than another: by the gap of all records,
-  /// and by half as much in the held-out ones.
+  /// Returns true if a larger set justifies its additional causes by the gap of all records, and by
+  /// half as much in the held-out ones.
   static bool is_worth(const CauseSet& larger, const CauseSet& s) {
     const auto more = static_cast<int>(larger.members.size() - s.members.size());
-    const double takes =
-        s.members.empty() ? kTakes * std::pow(kTakesToo, more - 1) : std::pow(kTakesToo, more);
+    const double takes = s.members.empty() ? kWithOneCause * std::pow(kWithOneMore, more - 1)
+                                           : std::pow(kWithOneMore, more);
     return larger.all < takes * s.all && larger.held_out < 0.5 * (1 + takes) * s.held_out;
   }
 
@@ -196,7 +197,8 @@ class Selection {
            t.model.effects.back().element_law();
   }
 
-  /// Whether one more cause can be told from those of a set: two laws of one place are one law.
+  /// Returns true if a cause is distinguishable from those of a set. Two laws at one place are one
+  /// law.
   bool joins(const Members& members, std::size_t cause) const {
     const Trial& t = *tried_[cause];
     return std::none_of(members.begin(), members.end(), [&](std::size_t i) {
@@ -226,8 +228,8 @@ class Selection {
     return out;
   }
 
-  /// Sets with one more cause than the given ones, best first: all of them a few steps far, those
-  /// that are best then to their end.
+  /// Returns sets with one more cause than the given ones, best first. Fits all of them a few
+  /// steps, then the best to convergence.
   std::vector<CauseSet> larger(const std::vector<CauseSet>& sets) {
     const std::vector<Extension> all = extensions(sets);
     std::vector<CauseSet> out(all.size());
@@ -240,8 +242,8 @@ class Selection {
       out[static_cast<std::size_t>(i)] =
           judged(e.members, free_run_fit(train_, starts, kScreenSteps, false).model);
     });
-    // What its values do not let have its name is another law. The records that were fitted count
-    // too: few held-out ones let several sets do nearly as well.
+    // A set whose values do not match its names is another law. Fitted records count too, because
+    // with few held-out ones several sets do nearly as well.
     const auto sort = [&] {
       std::erase_if(out, [](const CauseSet& s) { return !s.named || !std::isfinite(s.held_out); });
       std::stable_sort(out.begin(), out.end(),
@@ -258,7 +260,7 @@ class Selection {
     return out;
   }
 
-  /// The same set without one of its members, fitted.
+  /// Returns the set without one of its members, fitted.
   CauseSet without(const CauseSet& s, std::size_t member) const {
     CauseSet out = s;
     out.members.erase(out.members.begin() + static_cast<std::ptrdiff_t>(member));
@@ -277,25 +279,25 @@ class Selection {
     return finished(out);
   }
 
-  /// Index of a member among the effects of its set's model.
+  /// Returns the index of a member among the effects of its set's model.
   std::size_t effect_of(const CauseSet& s, std::size_t member) const {
     std::size_t out = context_.now.model.effects.size();
     for (std::size_t i = 0; i < member; ++i) out += !is_axis_error(tried_[s.members[i]]->kind);
     return out;
   }
 
-  /// Without the members beside which the others do as well.
-  CauseSet without_needless(CauseSet best) const {
+  /// Removes redundant members.
+  CauseSet without_redundant(CauseSet best) const {
     for (std::size_t i = 0; i < best.members.size() && best.members.size() > 1;) {
       CauseSet less = without(best, i);
-      const bool needless = may_lead(less) && !is_worth(best, less);
-      if (needless) best = std::move(less);
-      i = needless ? 0 : i + 1;
+      const bool redundant = may_lead(less) && !is_worth(best, less);
+      if (redundant) best = std::move(less);
+      i = redundant ? 0 : i + 1;
     }
     return best;
   }
 
-  /// Causes that do nearly as well in the stead of a set's member.
+  /// Returns the names of causes that do nearly as well as replacements of a set's member.
   std::vector<EffectKind> like(const CauseSet& best, std::size_t member) const {
     std::vector<EffectKind> out;
     const std::size_t own = best.members[member];

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "estimator/diagnose/law/hysteretic_force.h"
-#include "estimator/diagnose/law/slack.h"
+#include "estimator/diagnose/law/law.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 
 namespace framewatch::estimator {
@@ -12,11 +12,12 @@ namespace {
 
 constexpr double kDissipates = 0.15;     ///< dissipation() below which a law counts as elastic
 constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
-/// Damping ratio above which an oscillator hardly resonates: any force that lags behind the motion
-/// is like it.
+/// Damping ratio above which an oscillator hardly resonates. Any force that lags the motion
+/// resembles it.
 constexpr double kDulled = 0.4;
 
-/// Energy dissipated in a cycle to the peak deformation, over that of the box around its loop.
+/// Returns the energy dissipated in a cycle to the peak deformation, over that of the box around
+/// its loop.
 double dissipation(const ModelEffect& effect) {
   constexpr int kSteps = 400, kCycles = 2;
   Eigen::VectorXd d(kSteps * kCycles);
@@ -37,8 +38,8 @@ double highest_hz(const Fitter& fitter) {
   return out;
 }
 
-/// A resonator that is none: its frequency lies above the band, its mass exceeds that of its frame,
-/// or its damping is at its bound or too strong for a resonance.
+/// Returns true if a resonator is implausible: its frequency is above the band, its mass exceeds
+/// that of its frame, or its damping is at its bound or too strong for a resonance.
 bool is_no_oscillator(const TrialContext& c, const ModelEffect& effect) {
   const EffectPlace& place = effect.place;
   return effect.parameters[1].plain() > highest_hz(c.fitter) || at_bound(effect.parameters[2]) ||
@@ -47,7 +48,7 @@ bool is_no_oscillator(const TrialContext& c, const ModelEffect& effect) {
              c.fitter.plant().structure.frame_mass(place.story, place.frame);
 }
 
-/// A negative spring, damper or rotational flexibility.
+/// Returns true for a negative spring, damper or rotational flexibility.
 bool has_wrong_sign(const ModelEffect& effect) {
   using F = LawForm;
   const bool positive = effect.form == F::spring || effect.form == F::damper ||
@@ -55,8 +56,7 @@ bool has_wrong_sign(const ModelEffect& effect) {
   return positive && effect.parameters[0].plain() < 0;
 }
 
-/// Whether a brace that would be slack by what it yields does yield: one that does not is a
-/// clearance.
+/// Returns true if a slack brace yields. One that does not yield is a clearance.
 bool yields(const ModelEffect& slack) {
   return slack.parameters[SlackIndex::play].plain() + slack.parameters[SlackIndex::dy].plain() <
          slack.deformation;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/free_run_start.h"
+#include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "estimator/diagnose/trials/trial_names.h"
 
@@ -14,11 +15,11 @@ namespace {
 constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
 constexpr int kFromFarSteps = 20;
 constexpr int kTrialSteps = 3;  ///< of a free run's fit, before the costs are compared
-/// Times the least cost then, or that without the trials' effects: fits above it end there.
+/// Times the least cost so far, or the cost without the trials' effects: fits above it stop there.
 constexpr double kCostLimit = 4;
-/// Cost of the best trial over that without one, above which friction is begun anew.
+/// Cost of the best trial over that without one, above which friction starts again.
 constexpr double kNothingFound = 0.3;
-/// Cost over that without a trial, above which it explains nothing.
+/// Cost over that without a trial, above which the trial explains nothing.
 constexpr double kUseless = 0.9;
 constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
 
@@ -56,8 +57,9 @@ Trial trial_of(const TrialContext& c, const Candidate& candidate, const FitResul
   return out;
 }
 
-/// The candidates that get a free run: the best of each place, and as many whose names may be
-/// given, but for those that explain nothing where others do. The rest are added to `screened_out`.
+/// Returns the candidates that get a free run: the best of each place, and as many with allowed
+/// names. Leaves out those that explain nothing if others explain something. Adds the rest to
+/// `screened_out`.
 std::vector<Fitted> worth_a_free_run(const TrialContext& c, std::vector<Fitted> first,
                                      std::vector<Trial>& screened_out) {
   std::stable_sort(first.begin(), first.end(), [](const Fitted& a, const Fitted& b) {
@@ -91,9 +93,10 @@ bool ends_with_friction(const Model& model) {
   return !model.effects.empty() && model.effects.back().form == LawForm::friction;
 }
 
-/// Friction of elements, begun anew, whatever measured motion made of it.
-void begin_friction_anew(const TrialContext& c, const std::vector<Candidate>& candidates,
-                         std::vector<Fitted>& kept, std::vector<FitResult>& runs) {
+/// Fits friction of elements from separate start values, because measured motion may mislead its
+/// fit.
+void refit_friction(const TrialContext& c, const std::vector<Candidate>& candidates,
+                    std::vector<Fitted>& kept, std::vector<FitResult>& runs) {
   std::vector<Fitted> anew(candidates.size());
   run_all(c.parallel, static_cast<int>(candidates.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
@@ -122,8 +125,9 @@ void begin_friction_anew(const TrialContext& c, const std::vector<Candidate>& ca
   }
 }
 
-/// A model with the effects and the freed readings that another has beyond it, of a size.
-Model with_new(const Model& now, const Model& other, double size) {
+/// Returns `now` plus the effects and freed readings that only `other` has, with amplitudes scaled
+/// by `size`.
+Model with_effects_of(const Model& now, const Model& other, double size) {
   Model out = now;
   for (std::size_t e = now.effects.size(); e < other.effects.size(); ++e) {
     out.effects.push_back(other.effects[e]);
@@ -143,15 +147,12 @@ double least_cost(const TrialContext& c, const std::vector<FitResult>& runs) {
   return out;
 }
 
-/// Laws found before were fitted to free runs; driven by measured, noisy motion they lead the
-/// building astray: candidates begun again in the present model, with their effects or little of
-/// them.
-void begin_beside_laws(const TrialContext& c, const std::vector<Fitted>& kept,
-                       std::vector<FitResult>& runs) {
-  const std::vector<ModelEffect>& found = c.now.model.effects;
-  if (std::none_of(found.begin(), found.end(),
-                   [](const ModelEffect& e) { return e.element_law(); }))
-    return;
+/// Fits the candidates again from the present model, with their full effects or small ones. Earlier
+/// laws were fitted to free runs; driven by measured, noisy motion they mislead the fit of the
+/// building.
+void refit_from_present(const TrialContext& c, const std::vector<Fitted>& kept,
+                        std::vector<FitResult>& runs) {
+  if (!has_element_law(c.now.model)) return;
   const double least = least_cost(c, runs);
   if (least < kNearNoise * c.fitter.expected(c.now.model)) return;
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
@@ -160,8 +161,8 @@ void begin_beside_laws(const TrialContext& c, const std::vector<Fitted>& kept,
     options.max_steps = 0;
     FitResult from;
     for (const double size : {1.0, 0.1}) {
-      FitResult one =
-          c.fitter.fit(with_new(c.now.model, kept[at].fit.model, size), c.now.motion, options);
+      FitResult one = c.fitter.fit(with_effects_of(c.now.model, kept[at].fit.model, size),
+                                   c.now.motion, options);
       if (is_better(one, from)) from = std::move(one);
     }
     if (!from.good || from.cost > kCostLimit * least) return;
@@ -195,7 +196,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
   if (!c.fitter.plant().is_large() && least_cost(c, runs) > kNothingFound * c.now.cost)
-    begin_friction_anew(c, candidates, kept, runs);
+    refit_friction(c, candidates, kept, runs);
   const double least = least_cost(c, runs);
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
@@ -204,7 +205,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion, full_fit(runs[at].model));
     if (on.good && on.cost < runs[at].cost) runs[at] = on;
   });
-  begin_beside_laws(c, kept, runs);
+  refit_from_present(c, kept, runs);
   for (std::size_t at = 0; at < kept.size(); ++at) {
     const Fitted& f = kept[at];
     const bool good = runs[at].good;
@@ -220,7 +221,7 @@ void unite(std::vector<int>& list, const std::vector<int>& more) {
     if (std::find(list.begin(), list.end(), i) == list.end()) list.push_back(i);
 }
 
-/// Two proposals of one pair together.
+/// Returns two proposals of one pair as one candidate.
 Candidate joined(const Localisation& pair, const Proposal& p, const Proposal& q) {
   const std::size_t common = pair.model.effects.size();
   Model model = p.model;
@@ -257,11 +258,11 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
     bool friction = false;
     for (const Proposal& p : proposals[i]) {
       if (wanted && !wanted(p.kind)) continue;
-      // A family of laws with several names is judged by the name that its fit has.
+      // A family of laws with several names is judged by the name of its fit.
       if (is_excluded(c, p.kind) && p.kind != EffectKind::cubic_stiffness &&
           p.kind != EffectKind::bilinear_hysteresis && p.kind != EffectKind::bouc_wen)
         continue;
-      // What measured motion makes of friction that sticks is no reason to leave it out.
+      // A poor fit of sticking friction under measured motion is not a reason to skip it.
       const bool first_friction = !friction && ends_with_friction(p.model);
       friction |= first_friction;
       if (!axis && count++ >= kLawsFitted && !first_friction) continue;
@@ -304,7 +305,7 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
     if (list->size() > kPairLaws) list->resize(kPairLaws);
   }
   add_joined(pair, first, second, candidates);
-  // One of the two may suffice alone, though its place was not found alone.
+  // One of the two may suffice alone even if its place was not found alone.
   std::size_t from = 0;
   for (const std::vector<Proposal>* list : {&first, &second}) {
     ++from;

@@ -4,27 +4,27 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/fit/judged_fit.h"
-#include "estimator/diagnose/fit/model_error.h"
-#include "estimator/diagnose/fit/noise_colour.h"
+#include "estimator/diagnose/fit/noise_corner.h"
+#include "estimator/diagnose/propose/law_kind.h"
+#include "estimator/diagnose/propose/propose.h"
+#include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"
-#include "estimator/diagnose/trials/declared.h"
 #include "estimator/diagnose/trials/known_effects.h"
-#include "estimator/diagnose/trials/needless.h"
-#include "estimator/diagnose/trials/parameter_errors.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/select_trial.h"
 #include "estimator/diagnose/trials/several_causes.h"
-#include "estimator/diagnose/trials/sharpened.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/trials/trial_names.h"
-#include "estimator/diagnose/trials/wrong_labels.h"
+#include "estimator/diagnose/trials/trials.h"
 #include "estimator/diagnose/verdict/effect_search.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
-#include "estimator/diagnose/verdict/ramps.h"
-#include "estimator/diagnose/verdict/search_progress.h"
-#include "estimator/diagnose/verdict/two_sorts.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::estimator {
@@ -32,9 +32,135 @@ namespace {
 
 using Eigen::MatrixXcd;
 
+constexpr std::size_t kOfDeformation = 4, kDissipative = 2;
+
+bool is_dissipative(EffectKind law) {
+  return is_of_kind(law, LawKind::dissipative);
+}
+
+std::vector<Proposal> select_proposals(const TrialContext& c, std::vector<Proposal> all,
+                                       bool (*wanted)(EffectKind), std::size_t most) {
+  std::erase_if(all, [&](const Proposal& p) { return !wanted(p.kind) || is_excluded(c, p.kind); });
+  if (all.size() > most) all.resize(most);
+  return all;
+}
+
+/// Returns trials that combine a law of the deformation and a dissipative law at an element, best
+/// first. The elastic force of a part does not determine its damping, nor the reverse. Hysteresis
+/// is both, so it is left out. context: of the model without a law there.
+std::vector<Trial> trials_of_combined_laws(const TrialContext& c, const EffectPlace& element) {
+  const std::optional<Localisation> here = localise_element(c.fitter, c.now, element);
+  if (!here) return {};
+  const std::vector<Proposal> all = propose(c.fitter, *here, 0);
+  std::vector<Trial> out =
+      try_together(c, *here, select_proposals(c, all, is_of_deformation, kOfDeformation),
+                   select_proposals(c, all, is_dissipative, kDissipative));
+  select_trial(c, here->misfit, 0, out);
+  std::erase_if(out, [](const Trial& t) { return t.outcome != TrialOutcome::fitted; });
+  return out;
+}
+
+constexpr double kFarOff = 10;    ///< misfit over the expected, below which labels are not doubted
+constexpr double kMaxLeft = 0.3;  ///< of the cost, with the right labels
+constexpr std::size_t kLabelsFitted = 6;
+constexpr int kLabelSteps = 8;
+constexpr double kTurned = -2;  ///< relative gain error of a channel with reversed sign
+
+/// Returns the design with the effects of the present model.
+Model from_the_design(const TrialContext& c) {
+  Model out = initial_model(c.fitter.plant());
+  out.effects = c.now.model.effects;
+  out.free_gain = c.now.model.free_gain;
+  out.free_clock = c.now.model.free_clock;
+  for (const int axis : out.free_gain) out.gain[axis] = c.now.model.gain[axis];
+  for (const int axis : out.free_clock) out.clock_s[axis] = c.now.model.clock_s[axis];
+  return out;
+}
+
+Trial turned(const Model& from, int axis) {
+  Trial out;
+  out.kind = EffectKind::polarity;
+  out.place.kind = PlaceKind::channel;
+  out.place.channel = axis;
+  out.model = from;
+  out.model.free_gain.push_back(axis);
+  out.model.gain[axis] = kTurned;
+  return out;
+}
+
+Trial exchanged(const Model& from, int axis, int other) {
+  Trial out;
+  out.kind = EffectKind::swapped;
+  out.place.kind = PlaceKind::channel_pair;
+  out.place.channel = axis;
+  out.place.with_channel = other;
+  ModelEffect swap;
+  swap.form = LawForm::swapped;
+  swap.place = out.place;
+  out.model = from;
+  out.model.effects.push_back(swap);
+  return out;
+}
+
+std::vector<Trial> all_labels(const TrialContext& c) {
+  const Model from = from_the_design(c);
+  const auto axes = static_cast<int>(c.fitter.plant().axis_count());
+  std::vector<Trial> out;
+  for (int axis = 0; axis < axes; ++axis) {
+    if (std::find(from.free_gain.begin(), from.free_gain.end(), axis) == from.free_gain.end())
+      out.push_back(turned(from, axis));
+    for (int other = axis + 1; other < axes; ++other) out.push_back(exchanged(from, axis, other));
+  }
+  std::erase_if(out, [&](const Trial& t) {
+    return std::find(c.without.begin(), c.without.end(), t.kind) != c.without.end();
+  });
+  return out;
+}
+
+void sort_by_cost(std::vector<Trial>& trials) {
+  std::stable_sort(trials.begin(), trials.end(),
+                   [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
+}
+
+/// Continues the fit of every trial, at most `steps`. Trials that cannot be fitted get infinite
+/// cost.
+void continue_fits(const TrialContext& c, int steps, std::vector<Trial>& trials) {
+  run_all(c.parallel, static_cast<int>(trials.size()), [&](int i) {
+    Trial& t = trials[static_cast<std::size_t>(i)];
+    FitOptions options;
+    options.max_steps = steps;
+    const FitResult fit = c.fitter.fit(t.model, {}, options);
+    t.cost = fit.good ? fit.cost : std::numeric_limits<double>::infinity();
+    if (!fit.good) return;
+    t.misfit = fit.misfit;
+    t.model = fit.model;
+  });
+  sort_by_cost(trials);
+}
+
+/// Tries channels with reversed sign, also at the base, and pairs of channels with exchanged names.
+/// Runs before anything else, and only if the model is far from the records. Returns the trials,
+/// best first, or an empty list unless the best one removes most of the misfit. Not for large
+/// buildings, where exchanged channels are found among the pairs of places.
+std::vector<Trial> wrong_labels(const TrialContext& c) {
+  const Plant& plant = c.fitter.plant();
+  const double expected = c.fitter.expected(c.now.model);
+  if (plant.is_large() || plant.equations() == 1 || plant.prescribed ||
+      c.now.total_misfit() < kFarOff * expected)
+    return {};
+  std::vector<Trial> trials = all_labels(c);
+  continue_fits(c, 0, trials);
+  if (trials.size() > kLabelsFitted) trials.resize(kLabelsFitted);
+  continue_fits(c, kLabelSteps, trials);
+  std::erase_if(trials, [](const Trial& t) { return !(t.cost < 1e300); });
+  if (trials.empty() || trials.front().cost > kMaxLeft * c.now.cost) return {};
+  for (Trial& t : trials) t.fraction = (c.now.cost - t.cost) / std::max(c.now.cost - expected, 1.0);
+  return trials;
+}
+
 constexpr int kPolishSteps = 6, kBackSteps = 8;
-constexpr double kTakesSome = 0.95;  ///< gap with a law over that without
-constexpr double kMaxGone = 0.1;     ///< of the misfit beyond noise, that is left
+constexpr double kWithBoth = 0.95;  ///< gap with a law over that without
+constexpr double kMaxGone = 0.1;    ///< of the misfit beyond noise that remains
 
 class Diagnoser {
  public:
@@ -61,17 +187,17 @@ class Diagnoser {
     }
     search_.complete(now);
     search_.set_linear(now);
-    progress_.begin("labels", 0.02, 0.05);
+    progress_.begin("channel labels", 0.02, 0.05);
     const std::vector<Trial> labels = wrong_labels(search_.context_of(now));
     if (!labels.empty()) search_.adopt(labels, now);
     search_.run(now);
-    progress_.begin("what stays", 0.75, 0.8);
+    progress_.begin("checks", 0.75, 0.8);
     withdraw_other_kind(now);
-    const bool several = find_several(now) && !find_beside_several(now);
+    const bool several = find_several(now) && !find_further(now);
     if (out_.effects.empty()) name_nearest(now);
-    find_two_sorts(now);
+    find_combined_laws(now);
     if (!out_.effects.empty() && !several) {
-      drop_what_takes_nothing(now);
+      drop_redundant(now);
       polish(now);
     }
     name_by_shape(search_.context_of(now), out_.effects);
@@ -96,32 +222,32 @@ class Diagnoser {
     return fitter_.fit(model, motion, thorough(model, steps));
   }
 
-  /// Effects in doubt, found beside others, without which fit or gap are as good go again.
-  void drop_what_takes_nothing(FitResult& now) {
+  /// Removes effects of low confidence whose removal leaves fit or gap as good.
+  void drop_redundant(FitResult& now) {
     while (out_.effects.size() > 1) {
       const bool fits = search_.ratio(now) < 1 + chance_of(fitter_, now.model);
       if (fits && out_.effects.back().confidence > kDoubtful) return;
       const Model less = with_first(now.model, out_.effects, out_.effects.size() - 1, plant_);
       FitResult fitted = fit_to_the_end(fitter_, less, now.motion);
       if (!fitted.good) return;
-      const bool needless = fitted.cost < now.cost + kMinGain;
-      if (!needless && !takes_nothing(fitter_, now.model, fitted.model, options_.parallel)) return;
+      const bool redundant = fitted.cost < now.cost + kMinGain;
+      if (!redundant && !is_redundant(fitter_, now.model, fitted.model, options_.parallel)) return;
       out_.effects.pop_back();
       now = std::move(fitted);
     }
   }
 
-  /// Of a component, laws of two sorts in the place of one where that takes a tenth of the power
-  /// that is left. Hysteresis is of both.
-  void find_two_sorts(FitResult& now) {
+  /// For a component, replaces the law by laws of two sorts if that explains a tenth of the
+  /// remaining power. Hysteresis is of both sorts.
+  void find_combined_laws(FitResult& now) {
     if (plant_.equations() != 1 || out_.effects.size() != 1 || search_.ratio(now) < kNearNoise ||
         is_of_kind(out_.effects.front().chosen.kind, LawKind::hysteretic))
       return;
     FitResult linear = fit(out_.linear, {}, kBackSteps);
     const std::vector<Trial> trials =
-        trials_of_two_sorts(search_.context_of(linear), out_.effects.front().chosen.place);
+        trials_of_combined_laws(search_.context_of(linear), out_.effects.front().chosen.place);
     if (trials.empty() || worsens(trials.front(), now, 0) ||
-        gap_ratio(fitter_, trials.front().model, now.model, options_.parallel) > kTakesSome)
+        gap_ratio(fitter_, trials.front().model, now.model, options_.parallel) > kWithBoth)
       return;
     out_.effects.clear();
     search_.adopt(trials, linear);
@@ -136,8 +262,7 @@ class Diagnoser {
     if (better.good && better.cost < now.cost) now = better;
   }
 
-  /// The models of the result. Where more than noise is left they are fitted to what they are
-  /// judged by.
+  /// Sets the models of the result. If more than noise is left, fits them by judged_fit().
   void set_models(const Model& model) {
     out_.model = model;
     std::vector<RecordSegment> segments = segments_;
@@ -161,8 +286,7 @@ class Diagnoser {
                                    fitter_.within());
   }
 
-  /// A law is none beside which more than noise is left and whose place needs another sort of
-  /// force.
+  /// Withdraws a law if more than noise is left and its place needs another kind of force.
   void withdraw_other_kind(FitResult& now) {
     const double excess = search_.ratio(now) - 1;
     if (out_.effects.size() != 1 || excess < chance_of(fitter_, now.model) ||
@@ -175,7 +299,8 @@ class Diagnoser {
     now = fit(out_.linear, {}, kBackSteps);
   }
 
-  /// Where nothing is named and no place explains the misfit alone: causes that act at once.
+  /// If nothing is named and no place explains the misfit alone, searches for causes that act at
+  /// once.
   bool find_several(FitResult& now) {
     if (!out_.effects.empty() || search_.alone() < kOnePlace ||
         fits_separately(fitter_, out_.linear, out_.ratio_before))
@@ -202,8 +327,8 @@ class Diagnoser {
     return true;
   }
 
-  /// Causes that take most of the misfit let the place of another show itself.
-  bool find_beside_several(FitResult& now) {
+  /// Searches for a further effect once several causes explain most of the misfit.
+  bool find_further(FitResult& now) {
     if (plant_.is_large() || search_.ratio(now) - 1 > kMaxGone * (out_.ratio_before - 1))
       return false;
     const Diagnosis before = out_;
@@ -223,7 +348,7 @@ class Diagnoser {
     return true;
   }
 
-  /// Where no law explains enough to hold: the one that is near.
+  /// If no law explains enough, names the nearest one.
   void name_nearest(FitResult& now) {
     if (!out_.effects.empty() || !out_.reason.empty() ||
         !nearest_law_first(search_.context_of(now), out_.where, out_.rejected) ||
@@ -236,9 +361,9 @@ class Diagnoser {
   }
 
   const Plant& plant_;
-  std::vector<RecordSegment>& segments_;  ///< their noise is coloured
+  std::vector<RecordSegment>& segments_;  ///< with the corner frequency of their noise
   SearchProgress progress_;
-  DiagnosisOptions options_;  ///< `parallel` tells the progress
+  DiagnosisOptions options_;  ///< `parallel` reports progress
   Fitter fitter_;
   Diagnosis out_;
   EffectSearch search_;

@@ -6,8 +6,8 @@
 
 namespace framewatch::estimator {
 
-/// The method of docs/diagnosis.md on segments of one building. Deterministic: the result does not
-/// depend on DiagnosisOptions::parallel.
+/// Runs the method of docs/diagnosis.md on segments of one building. Deterministic: the result does
+/// not depend on DiagnosisOptions::parallel.
 Diagnosis diagnose(const Plant& plant, const std::vector<RecordSegment>& segments,
                    const DiagnosisOptions& options);
 

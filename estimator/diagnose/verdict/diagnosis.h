@@ -10,6 +10,7 @@
 
 #include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/fit/unknowns.h"
+#include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/propose/law_kind.h"
 #include "estimator/diagnose/trials/found_effect.h"
 #include "estimator/numeric/parallel.h"
@@ -20,17 +21,18 @@ enum class Verdict { adequate, explained, partly_explained, unexplained };
 
 struct WhereEntry {
   EffectPlace place;
-  double ratio = 0;  ///< Localisation::ratio: misfit left under an arbitrary signal here; 1: noise
+  double ratio =
+      0;  ///< Localisation::ratio: misfit with an arbitrary signal here; 1: only noise is left
   /// Time and frequency span of nine tenths of the needed signal, in the segment `record`; 0, 0:
-  /// not known.
+  /// unknown.
   std::size_t record = 0;
   double from_s = 0, to_s = 0, low_hz = 0, high_hz = 0;
-  double peak = 0;                ///< of that signal: N, of an axis m/s^2
+  double peak = 0;                ///< of that signal: N; for an axis m/s^2
   std::optional<KindOfLaw> kind;  ///< of the likeliest element, and of a floor that needs a law
 };
 
-/// The best of the laws that were tried and not named: the free run with it, fitted to the training
-/// records, disagrees less with every record than without.
+/// The best of the laws that were tried and not named. Fitted to the training records, its free run
+/// has a smaller gap in every record than the model without it.
 struct LeadingLaw {
   Trial trial;
   double before = 0, after = 0;  ///< held-out gap without and with it
@@ -40,26 +42,27 @@ struct Diagnosis {
   Verdict verdict = Verdict::unexplained;
   std::string reason;
   Model linear, model;  ///< fitted to all segments
-  /// declared_model(): what a configuration file can hold.
+  /// From declared_model(): values for a configuration file.
   Model declared;
-  /// Of the training segments alone, where causes that act at once were chosen by it.
+  /// Fitted to the training segments alone, if several causes were chosen by it.
   std::optional<Model> trained;
-  std::vector<Gap> before, after;  ///< of each segment, models fitted to the training ones alone
-  /// The training segments alone do not determine the effects: `after` is of `model`.
+  std::vector<Gap> before,
+      after;  ///< of each segment, for models fitted to the training segments alone
+  /// The training segments alone do not determine the effects, so `after` is that of `model`.
   bool after_of_all = false;
   std::vector<FoundEffect> known;            ///< effects of the configuration, fitted again
   std::vector<FoundEffect> effects;          ///< found, in their order
   std::vector<WhereEntry> where;             ///< the likeliest places, best first
   std::vector<WhereEntry> map;               ///< every place, without the signal
   std::vector<Trial> rejected;               ///< trials of the last round, if none was adopted
-  std::vector<LeadingLaw> leading;           ///< where nothing was named, best first
+  std::vector<LeadingLaw> leading;           ///< if no effect was named, best first
   double ratio_before = 0, ratio_after = 0;  ///< misfit over its expectation
   double noise_corner_hz = 0;                ///< RecordSegment::corner_hz; 0: the noise is white
 };
 
-/// What is done now, the share of the whole that is done, 0 to 1, and the share when the work that
-/// begins now is done.
-using TellProgress = std::function<void(const std::string& what, double done, double then)>;
+/// Reports progress. what: the current work; done: share of the whole that is done, 0 to 1; then:
+/// share when the work that begins now is done.
+using ReportProgress = std::function<void(const std::string& what, double done, double then)>;
 
 struct DiagnosisOptions {
   Tolerances tolerances;
@@ -68,8 +71,16 @@ struct DiagnosisOptions {
   std::vector<Effect> known;        ///< effects that the building is known to have
   std::vector<EffectKind> without;  ///< excluded names
   Parallel parallel;                ///< the result does not depend on it
-  Parallel within;                  ///< the same within its pieces, and between its calls
-  TellProgress progress;            ///< between the calls of `parallel`
+  Parallel within;          ///< for the pieces of one call of `parallel`, and between its calls
+  ReportProgress progress;  ///< between the calls of `parallel`
 };
+
+/// Describes the signal that each place needs: its time, frequencies and size. For the first
+/// element and the first floor among the best three, also the kind of force.
+std::vector<WhereEntry> where_of(const Fitter& fitter, const std::vector<Localisation>& places);
+
+/// Returns every place, best first. Uses the iterated localization of a place if there is one,
+/// otherwise the one after one step.
+std::vector<WhereEntry> map_of(const Located& located);
 
 }  // namespace framewatch::estimator

@@ -6,18 +6,17 @@
 #include <optional>
 #include <utility>
 
-#include "estimator/diagnose/fit/noise_colour.h"
-#include "estimator/diagnose/locate/beside_place.h"
+#include "estimator/diagnose/fit/noise_corner.h"
+#include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/trials/implausible_masses.h"
-#include "estimator/diagnose/trials/in_its_stead.h"
-#include "estimator/diagnose/trials/needless.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/select_trial.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/trials/trial_names.h"
-#include "estimator/diagnose/trials/trial_relations.h"
+#include "estimator/diagnose/verdict/diagnosis.h"
 #include "estimator/diagnose/verdict/verdict.h"
-#include "estimator/diagnose/verdict/where.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -26,22 +25,23 @@ namespace {
 constexpr double kOneLaw = 0.99;
 constexpr double kClearer = 0.7;  ///< excess of a place's misfit over that of another search
 constexpr int kStepsBack = 8;
-constexpr std::size_t kLeadLaws = 3;  ///< laws beside which another is looked for
-constexpr double kLeadTakes = 0.3;    ///< of the misfit that a free place takes
-constexpr double kTogether = 0.97;    ///< of the misfit beyond noise, that two explain
-constexpr double kMaxOfRest = 0.8;    ///< of what is left beside the first, by the second
-constexpr double kColoured = 1.05, kMaxColoured = 3;  ///< ratios of places beside which noise is
+constexpr std::size_t kLeadLaws = 3;   ///< laws with which another effect is searched for
+constexpr double kLeadExplains = 0.3;  ///< of the misfit that a free place explains
+constexpr double kTogether = 0.97;     ///< of the misfit beyond noise that two laws explain
+constexpr double kMaxOfRest = 0.8;     ///< of the rest after the first, by the second
+constexpr double kNoiseRatio = 1.05,
+                 kMaxNoiseRatio = 3;  ///< ratios of places that allow an estimate of the noise
 
-/// Reduction of the cost that is more than chance.
+/// Returns the reduction of the cost that is more than chance.
 double needed_of(const Fitter& fitter, const Model& model) {
   return std::max(kMinGain, kSignificant * std::sqrt(fitter.expected(model)));
 }
 
-/// Of trials, best first, those beside which another effect may be.
+/// Returns the trials with which another effect may act. trials: best first.
 std::vector<Trial> leads_of(const std::vector<Trial>& trials) {
   std::vector<Trial> out;
   for (const Trial& t : without_duplicates(trials)) {
-    if (t.outcome != TrialOutcome::fitted || t.second || t.fraction < kLeadTakes ||
+    if (t.outcome != TrialOutcome::fitted || t.second || t.fraction < kLeadExplains ||
         t.kind == EffectKind::unmeasured_force)
       continue;
     out.push_back(t);
@@ -52,6 +52,42 @@ std::vector<Trial> leads_of(const std::vector<Trial>& trials) {
 
 }  // namespace
 
+SearchProgress::SearchProgress(ReportProgress report, Parallel parallel)
+    : report_(std::move(report)), parallel_(std::move(parallel)) {}
+
+void SearchProgress::begin(const std::string& what, double from, double to,
+                           std::vector<double> calls) {
+  from_ = done_ = std::max(from, done_);
+  to_ = std::max(to, from_);
+  calls_ = std::move(calls);
+  call_ = 0;
+  describe(what);
+}
+
+void SearchProgress::describe(const std::string& what) {
+  what_ = what;
+  report(done_);
+}
+
+Parallel SearchProgress::counted() {
+  return [this](int count, const std::function<void(int)>& work) { run(count, work); };
+}
+
+void SearchProgress::run(int count, const std::function<void(int)>& work) {
+  const double left = to_ - done_;
+  const double part =
+      call_ < calls_.size() ? std::min(calls_[call_] * (to_ - from_), left) : left / 2;
+  ++call_;
+  report(done_ + part);
+  run_all(parallel_, count, work);
+  done_ += part;
+  report(done_);
+}
+
+void SearchProgress::report(double then) const {
+  if (report_) report_(what_, done_, then);
+}
+
 void EffectSearch::run(FitResult& now) {
   const FitResult linear = now;
   const double corner_hz = segments_.front().corner_hz;
@@ -60,7 +96,7 @@ void EffectSearch::run(FitResult& now) {
   const bool more = fitter_.plant().equations() > 1 && !fitter_.plant().is_large();
   if (more && out_.effects.empty()) look_ahead(now);
   if (out_.effects.empty()) search_with_free_damping(now);
-  if (more) choose_laws_again(now);
+  if (more) replace_laws(now);
   if (by_place_) doubt_all();
   if (!out_.effects.empty()) return;
   set_corner(corner_hz, segments_);
@@ -68,10 +104,11 @@ void EffectSearch::run(FitResult& now) {
   set_linear(now);
 }
 
-/// The laws once more, beside all that was found since; where another is chosen, what it leaves.
-void EffectSearch::choose_laws_again(FitResult& now) {
+/// Compares the laws again with everything found since. If one is replaced, searches its residual.
+void EffectSearch::replace_laws(FitResult& now) {
   bool another = false;
-  for (FoundEffect& effect : out_.effects) another |= choose_again(context_of(now), effect, now);
+  for (FoundEffect& effect : out_.effects)
+    another |= choose_replacement(context_of(now), effect, now);
   if (!another) return;
   complete(now);
   rounds(now, out_.effects.size());
@@ -84,8 +121,8 @@ void EffectSearch::rounds(FitResult& now, std::size_t first) {
   }
 }
 
-/// What is missing may hide the form of the damping, and that what is missing: once more with
-/// ratios that need not be worth their price until something is found.
+/// A missing effect and the form of the damping may hide each other. Searches again with free
+/// damping ratios, which need not justify their price until something is found.
 void EffectSearch::search_with_free_damping(FitResult& now) {
   FitResult free = with_free_damping(fitter_, now);
   if (!free.good) return;
@@ -101,15 +138,15 @@ void EffectSearch::search_with_free_damping(FitResult& now) {
   alone_ = to_beat_;
 }
 
-/// Two effects, neither of which holds without the other: each of the best laws is taken for
-/// granted, and stays where another is found beside it and little is left.
+/// Searches for two effects, neither of which is accepted without the other. Assumes each of the
+/// best laws provisionally, and keeps it if another is found and little is left.
 void EffectSearch::look_ahead(FitResult& now) {
   const Diagnosis before = out_;
   const double alone = alone_;
   const double corner_hz = segments_.front().corner_hz;
   for (const Trial& lead : leads_of(before.rejected)) {
     FitResult with = now;
-    if (explains_beside(lead, with)) {
+    if (explains_with_second(lead, with)) {
       now = std::move(with);
       return;
     }
@@ -119,7 +156,7 @@ void EffectSearch::look_ahead(FitResult& now) {
   }
 }
 
-bool EffectSearch::explains_beside(const Trial& lead, FitResult& now) {
+bool EffectSearch::explains_with_second(const Trial& lead, FitResult& now) {
   std::vector<Trial> trials = out_.rejected;
   const auto at = std::find_if(trials.begin(), trials.end(), [&](const Trial& t) {
     return t.kind == lead.kind && t.place == lead.place && !t.second;
@@ -130,7 +167,7 @@ bool EffectSearch::explains_beside(const Trial& lead, FitResult& now) {
   before_lead_ = now.cost;
   adopt(trials, now);
   if (!out_.effects.empty()) {
-    const bool here = find_beside_at(lead, now);
+    const bool here = find_second_law_at(lead, now);
     if (here) complete(now);
     rounds(now, here ? 2 : 1);
   }
@@ -140,8 +177,8 @@ bool EffectSearch::explains_beside(const Trial& lead, FitResult& now) {
   return true;
 }
 
-/// What changes with time beside a law of the motion, or the other way round, at the same place.
-bool EffectSearch::find_beside_at(const Trial& lead, FitResult& now) {
+/// Adds a time-varying law to a law of the motion at the same place, or the reverse.
+bool EffectSearch::find_second_law_at(const Trial& lead, FitResult& now) {
   const std::optional<Localisation> here = localise_element(fitter_, now, lead.place);
   if (!here || here->ratio > kOnePlace) return false;
   const TrialContext context = context_of(now);
@@ -149,12 +186,13 @@ bool EffectSearch::find_beside_at(const Trial& lead, FitResult& now) {
     return changes_with_time(kind) != changes_with_time(lead.kind);
   });
   const double bound = std::min(now.cost, bound_of(fitter_.plant(), *here));
-  return holds(context, bound, needed_of(fitter_, now.model), trials) && adopt_held(trials, now);
+  return accepts(context, bound, needed_of(fitter_, now.model), trials) &&
+         adopt_accepted(trials, now);
 }
 
-/// Whether the best of the trials is enough, with a law that is taken for granted.
-bool EffectSearch::holds(const TrialContext& context, double bound, double needed,
-                         std::vector<Trial>& trials) {
+/// Returns true if the best of the trials explains enough, together with a provisional law.
+bool EffectSearch::accepts(const TrialContext& context, double bound, double needed,
+                           std::vector<Trial>& trials) {
   if (select_trial(context, bound, needed, trials)) return true;
   if (before_lead_ == 0 || trials.empty()) return false;
   const Trial& best = trials.front();
@@ -168,10 +206,10 @@ void EffectSearch::complete(FitResult& now) {
   if (by_place_hz > 0) fit_with_corner(0, now);
   FitResult with = with_free_damping(fitter_, now);
   if (with.good && out_.effects.empty() && one_damper_does(context_of(now), with)) with = now;
-  if (with.good && colour_noise(fitter_, segments_, with)) now = with;
+  if (with.good && fit_noise_corner(fitter_, segments_, with)) now = with;
   settle_damping(fitter_, std::move(with), now);
-  colour_noise(fitter_, segments_, now);
-  by_place_ = segments_.front().corner_hz == 0 && by_place_hz > 0 && ratio(now) > kColoured;
+  fit_noise_corner(fitter_, segments_, now);
+  by_place_ = segments_.front().corner_hz == 0 && by_place_hz > 0 && ratio(now) > kNoiseRatio;
   if (by_place_) fit_with_corner(by_place_hz, now);
 }
 
@@ -181,13 +219,13 @@ void EffectSearch::fit_with_corner(double corner_hz, FitResult& now) {
   if (again.good) now = again;
 }
 
-/// Noise has its colour before all that is missing is known: that of what is left where anything
-/// may act at the likeliest place.
-void EffectSearch::colour_by_place(FitResult& now, Located& located) {
+/// Estimates the noise before all effects are known, from the residual with arbitrary signals at
+/// the likeliest place.
+void EffectSearch::set_noise_by_place(FitResult& now, Located& located) {
   const Plant& plant = fitter_.plant();
   if (plant.unread.cols() > 0 || plant.equations() < 2 || located.places.empty() ||
-      located.places.front().ratio < kColoured || located.places.front().ratio > kMaxColoured ||
-      !colour_beside(fitter_, segments_, located.places.front()))
+      located.places.front().ratio < kNoiseRatio || located.places.front().ratio > kMaxNoiseRatio ||
+      !set_noise_corner_at(fitter_, segments_, located.places.front()))
     return;
   by_place_ = true;
   fit_with_corner(segments_.front().corner_hz, now);
@@ -201,14 +239,14 @@ double EffectSearch::ratio(const FitResult& now) const {
 
 TrialContext EffectSearch::context_of(const FitResult& now) const {
   return {fitter_, now, options_.without, options_.parallel,
-          [this](const std::string& what) { progress_.say(what); }};
+          [this](const std::string& what) { progress_.describe(what); }};
 }
 
 bool EffectSearch::one_round(FitResult& now, std::size_t round) {
   const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
-  progress_.begin("where", shares.where, shares.trials, {0.4, 0.35});
+  progress_.begin("places", shares.where, shares.trials, {0.4, 0.35});
   Located located = locate(fitter_, now, options_.parallel);
-  colour_by_place(now, located);
+  set_noise_by_place(now, located);
   relocate_beside(context_of(now), out_.effects, located);
   if (located.places.empty()) return false;
   const Localisation& place = located.places.front();
@@ -222,19 +260,18 @@ bool EffectSearch::one_round(FitResult& now, std::size_t round) {
   }
   const double needed = needed_of(fitter_, now.model);
   if (excess < needed) return find_mass(now, located);
-  // Beside laws that fit, a small rest is a linear effect or the shape of these laws: no further
-  // law.
+  // If the laws fit, a small rest is a linear effect or the shape of these laws, not a further law.
   const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
   if (small && is_element(place)) return false;
   bool found = false;
   const std::vector<Trial> trials = trials_of(now, located, round, small, found);
   if (trials.empty() || trials.front().outcome != TrialOutcome::fitted) return false;
-  if (found) return adopt_held(trials, now);
+  if (found) return adopt_accepted(trials, now);
   out_.rejected = without_duplicates(trials);
   return false;
 }
 
-/// The trials of a round, best first, and whether the best one holds.
+/// Returns the trials of a round, best first. found: set to true if the best one is accepted.
 std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& located,
                                            std::size_t round, bool small, bool& found) {
   const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
@@ -245,44 +282,45 @@ std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& 
   const bool pairs = place.ratio > kOnePlace;
   const TrialContext context = context_of(now);
   if (pairs) {
-    progress_.begin("two places", shares.trials, shares.laws());
+    progress_.begin("pairs of places", shares.trials, shares.laws());
     trials = trials_of_pairs(context, located, needed, bound);
   }
   found = leaves_less(trials, bound_of(fitter_.plant(), place) - needed) &&
-          holds(context, bound, needed, trials);
+          accepts(context, bound, needed, trials);
   if (!found) {
     progress_.begin("laws", shares.trials, shares.end, {0.05, 0.2, 0.2, 0.2});
     append(trials, trials_of_places(context, located, small));
-    found = holds(context, bound, needed, trials);
+    found = accepts(context, bound, needed, trials);
   }
   // Several forces at one place may be those of two effects.
   if (!found && !pairs && place.candidate_places.front().size() > 1) {
     append(trials, trials_of_pairs(context, located, needed, bound));
-    found = holds(context, bound, needed, trials);
+    found = accepts(context, bound, needed, trials);
   }
   if (!found) {
     append(trials, trials_of_whole_frame(context, located, -1));
-    found = holds(context, bound, needed, trials);
+    found = accepts(context, bound, needed, trials);
   } else if (const int frame = common_frame(trials.front()); frame >= 0) {
-    // One cause rather than two: what holds of a whole frame is no chance in each of its stories.
+    // One cause rather than two: a law of a whole frame is not a coincidence in each of its
+    // stories.
     std::vector<Trial> whole = trials_of_whole_frame(context, located, frame);
-    const bool one = holds(context, bound, needed, whole);
+    const bool one = accepts(context, bound, needed, whole);
     append(trials, whole);
     if (one) std::rotate(trials.begin(), trials.end() - std::ssize(whole), trials.end());
   }
   return trials;
 }
 
-/// Adopts the best of trials that hold, unless it is a second law at the place of an earlier one:
-/// what changes with time beside a law of the motion is none.
-bool EffectSearch::adopt_held(const std::vector<Trial>& trials, FitResult& now) {
+/// Adopts the best accepted trial, unless it is a second law at the place of an earlier one. A
+/// time-varying law and a law of the motion may share a place.
+bool EffectSearch::adopt_accepted(const std::vector<Trial>& trials, FitResult& now) {
   const Trial& best = trials.front();
   for (std::size_t i = 0; i < out_.effects.size(); ++i) {
     const FoundEffect& earlier = out_.effects[i];
     if (!same_spot(earlier.chosen.place, best.place) ||
         changes_with_time(earlier.chosen.kind) != changes_with_time(best.kind))
       continue;
-    // Two laws at one place are a single law that the catalogue does not have.
+    // Two laws at one place are a single law that the catalog lacks.
     const bool whole = earlier.chosen.place.kind == PlaceKind::whole_frame;
     if (earlier.chosen.fraction < kOneLaw && fitter_.plant().equations() > 1 && !whole)
       withdraw(now, i);
@@ -300,10 +338,10 @@ bool EffectSearch::find_mass(FitResult& now, const Located& located) {
   return true;
 }
 
-/// Goes back to the model before the effect `first` was added.
+/// Returns to the model before the effect `first` was added.
 void EffectSearch::withdraw(FitResult& now, std::size_t first) {
   const Plant& plant = fitter_.plant();
-  out_.reason = "no single law of the catalogue is what acts at " +
+  out_.reason = "no single law of the catalog explains the force at " +
                 place_text(out_.effects[first].chosen.place, plant.structure, plant.axes);
   out_.rejected.clear();
   for (std::size_t i = first; i < out_.effects.size(); ++i)
@@ -333,13 +371,14 @@ void EffectSearch::adopt(const std::vector<Trial>& trials, FitResult& now) {
   }
   const Model before = now.model;
   now = fit_to_the_end(fitter_, best.model, now.motion);
-  // Trials of a large building hold its masses: what these explain looks like the effect.
-  if ((known > 0 || fitter_.plant().is_large()) && removes_needless(fitter_, before, now)) {
+  // Trials of a large building hold its masses, so an effect of the masses looks like the trial's
+  // effect.
+  if ((known > 0 || fitter_.plant().is_large()) && remove_redundant(fitter_, before, now)) {
     out_.effects.resize(known);
     if (known == 0) set_linear(now);
     return;
   }
-  remove_needless_earlier(fitter_, out_.effects, now);
+  remove_earlier_redundant(fitter_, out_.effects, now);
 }
 
 }  // namespace framewatch::estimator

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "estimator/diagnose/trials/select_trial.h"
-#include "estimator/diagnose/trials/trial_relations.h"
+#include "estimator/diagnose/trials/trial.h"
 
 namespace framewatch::estimator {
 
 namespace {
 
-/// What a law leaves over what a general force of the kind does, below which the law is better
+/// Residual of a law over that of a general force of the kind, below which the law is better
 /// evidence than the kind.
 constexpr double kFarLess = 0.1;
 
@@ -17,7 +17,7 @@ bool is_of_deformation(LawKind kind) {
   return kind == LawKind::elastic || kind == LawKind::impact;
 }
 
-/// What the force that the law's place needs was found to be.
+/// Returns the kind of the force needed at the law's place, or null if it is unknown.
 const KindOfLaw* known_there(const Trial& law, const std::vector<WhereEntry>& where) {
   if (law.place.kind == PlaceKind::whole_frame) return nullptr;
   const auto there = std::find_if(where.begin(), where.end(), [&](const WhereEntry& w) {
@@ -26,8 +26,8 @@ const KindOfLaw* known_there(const Trial& law, const std::vector<WhereEntry>& wh
   return there == where.end() ? nullptr : &*there->kind;
 }
 
-/// Whether a law leaves far less than general functions of the motion do. Friction that sticks is
-/// none of them: it is what holds.
+/// Returns true if a law leaves far less than general functions of the motion. Friction that sticks
+/// is not such a function: it is the force that holds.
 bool is_better_than_its_kind(const Trial& law, const KindOfLaw& known) {
   const double best = *std::max_element(known.share.begin(), known.share.end());
   return 1 - law.fraction < kFarLess * (1 - best);
@@ -55,9 +55,9 @@ bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry
 
 namespace {
 
-/// Whether it is a force from nowhere, and the likeliest place is an element whose force follows
-/// its motion.
-bool is_needless_force(const Trial& trial, const std::vector<WhereEntry>& where) {
+/// Returns true if the trial is an arbitrary force although the likeliest place is an element whose
+/// force follows its motion.
+bool is_redundant_force(const Trial& trial, const std::vector<WhereEntry>& where) {
   const std::vector<ModelEffect>& effects = trial.model.effects;
   if (effects.empty() || effects.back().form != LawForm::broadband || where.empty() ||
       !where.front().kind)
@@ -69,7 +69,7 @@ bool is_needless_force(const Trial& trial, const std::vector<WhereEntry>& where)
 }  // namespace
 
 bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where, double left) {
-  if (is_needless_force(law, where)) return true;
+  if (is_redundant_force(law, where)) return true;
   const auto is = [&](LawKind kind) { return is_of_kind(law.kind, kind); };
   const bool of_deformation = is_of_deformation(law.kind);
   const bool other =

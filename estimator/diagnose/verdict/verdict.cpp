@@ -4,26 +4,30 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/locate/locate.h"
+#include "estimator/diagnose/model/bias.h"
 #include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
 
 namespace framewatch::estimator {
 namespace {
 
+using Eigen::Index;
+
 constexpr double kAdequateGap = 2;     ///< NRMSE over its floor
 constexpr double kExplainsAll = 0.97;  ///< of the misfit beyond noise
 constexpr double kNearFloor = 2.5;     ///< NRMSE over its floor
-constexpr double kAtFloor = 1.15;      ///< the same
+constexpr double kAtFloor = 1.15;      ///< NRMSE over its floor
 constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
 constexpr int kTrainSteps = 8;
 constexpr double kLittle = 0.1;      ///< of an effect's size
 constexpr std::size_t kLeading = 3;  ///< rejected laws whose free run is fitted
 constexpr int kLeadingSteps = 4;
 constexpr double kLeads = 0.9;     ///< gap with a law over the one without
-constexpr double kNoWorse = 1.02;  ///< the same of any record
-constexpr double kWorse = 1.1;     ///< held-out gap with what was found over the one without
-/// Of the misfit beyond noise that is left at most when each record is fitted separately.
+constexpr double kNoWorse = 1.02;  ///< gap of any record with a law over the one without
+constexpr double kWorse = 1.1;     ///< held-out gap with the effects over the one without
+/// Largest share of the misfit beyond noise that is left if each record is fitted separately.
 constexpr double kApart = 0.25;
 
 }  // namespace
@@ -88,14 +92,14 @@ Model with_first(const Model& model, const std::vector<FoundEffect>& effects, st
 
 namespace {
 
-/// Starts of the model that has the first `count` of the effects.
+/// Returns starts of the model with the first `count` of the effects.
 std::vector<Model> starts_with(const std::vector<Model>& found, const Diagnosis& diagnosis,
                                std::size_t count, const Plant& plant) {
   std::vector<Model> out;
   for (const Model& model : found) {
     out.push_back(with_first(model, diagnosis.effects, count, plant));
-    // Stiffnesses that make up for what is not there yet may be a long way off, and so may what
-    // its neighbours made of an effect.
+    // Stiffnesses that compensate for a missing effect may be far off, and so may an effect fitted
+    // together with the others.
     out.push_back(out.back());
     out.back().theta = diagnosis.linear.theta;
     out.push_back(out.back());
@@ -110,7 +114,7 @@ std::vector<Model> starts_with(const std::vector<Model>& found, const Diagnosis&
 
 void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out) {
   const std::size_t holdout_from = options.holdout_from, count = out.effects.size();
-  // Infinite where a run diverges.
+  // Infinite if a run diverges.
   const auto held_out = [&](const std::vector<Gap>& gaps) {
     return gaps.size() < fitter.segments().size() ? std::numeric_limits<double>::infinity()
                                                   : mean_gap(gaps, holdout_from);
@@ -158,7 +162,7 @@ bool is_arbitrary(const Model& model) {
                      [](const ModelEffect& e) { return e.form == LawForm::broadband; });
 }
 
-/// Whether no record is worse.
+/// Returns true if no record is worse.
 bool no_worse(const std::vector<Gap>& before, const std::vector<Gap>& after) {
   if (after.size() < before.size()) return false;
   for (std::size_t r = 0; r < before.size(); ++r)
@@ -220,9 +224,9 @@ bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
   for (const FoundEffect& e : out.effects) out.rejected.push_back(e.chosen);
   out.effects.clear();
   out.reason =
-      worse ? "the model with what was found is worse than the one without"
-            : "the law that comes nearest leaves too much for one that is not known to be of "
-              "the kind of force at its place";
+      worse ? "the model with the effects found is worse than the model without them"
+            : "the nearest law leaves too large a gap, and is not known to be of the kind of "
+              "force at its place";
   out.after = out.before;
   out.after_of_all = false;
   out.ratio_after = out.ratio_before;
@@ -263,21 +267,22 @@ void judge(const Fitter& fitter, Diagnosis& out) {
     out.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
     if (!adequate && out.reason.empty() && fits_separately(fitter, out.linear, out.ratio_before))
       out.reason =
-          "each record alone fits a linear building, all of them together do not: they are of "
-          "different buildings, or the building changed between them; measure both in one state of "
-          "it, or diagnose the records of each state alone";
+          "each record alone fits a linear building, but all together do not: they are of "
+          "different "
+          "buildings, or the building changed between them; diagnose the records of each state "
+          "alone, or measure again in one state";
     return;
   }
   const double fraction =
       (out.ratio_before - out.ratio_after) / std::max(out.ratio_before - 1, 1e-9);
-  // An arbitrary force does as well as any law: it explains nothing. Nor does a law that is near.
+  // An arbitrary force does as well as any law, so it explains nothing. Neither does a nearest law.
   const bool surrogate =
       std::any_of(out.effects.begin(), out.effects.end(), [&](const FoundEffect& e) {
         return e.nearest ||
                (e.index >= 0 &&
                 out.model.effects[static_cast<std::size_t>(e.index)].form == LawForm::broadband);
       });
-  // A linear effect has no shape of its own: what it leaves beyond chance is another one's.
+  // A linear effect has no free shape, so a residual beyond chance belongs to another effect.
   const bool another =
       std::any_of(out.effects.begin(), out.effects.end(), [&](const FoundEffect& e) {
         return e.index >= 0 && e.approximate &&
@@ -287,6 +292,77 @@ void judge(const Fitter& fitter, Diagnosis& out) {
       !surrogate && !another && (fits || (fraction > kExplainsAll && gap < kNearFloor * floor))
           ? Verdict::explained
           : Verdict::partly_explained;
+}
+
+std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions& options,
+                                      std::vector<RecordSegment>& segments) {
+  for (const Effect& e : options.known)
+    if (e.kind == EffectKind::bias_drift)
+      for (RecordSegment& s : segments)
+        s = without_ramp(s, e.place.channel, {e.value("ramp_mps3"), e.value("from_s"), 0});
+  std::vector<FoundEffect> out;
+  if (std::find(options.without.begin(), options.without.end(), EffectKind::bias_drift) !=
+      options.without.end())
+    return out;
+  const std::vector<RecordSegment> whole = segments;
+  for (Index a = 0; a < plant.axis_count(); ++a) {
+    FoundEffect found;
+    found.chosen.kind = EffectKind::bias_drift;
+    found.chosen.place.kind = PlaceKind::channel;
+    found.chosen.place.channel = static_cast<int>(a);
+    found.chosen.fraction = 1;
+    found.confidence = 0.99;
+    bool any = false;
+    for (std::size_t r = 0; r < segments.size(); ++r) {
+      const auto ramp = find_ramp(plant, whole[r], a);
+      found.ramp_mps3.push_back(ramp ? ramp->slope : 0);
+      found.ramp_from_s.push_back(ramp ? ramp->from_s : 0);
+      found.drift_rms_mps2.push_back(ramp ? ramp->rms : 0);
+      if (!ramp) continue;
+      any = true;
+      segments[r] = without_ramp(segments[r], a, *ramp);
+    }
+    if (any) out.push_back(std::move(found));
+  }
+  return out;
+}
+
+namespace {
+
+/// outputs: number of axes in Gap::overall.
+void add_ramp(const RecordSegment& s, Index axis, double slope, double from_s, double rms,
+              Index outputs, Gap& gap) {
+  const double length = std::max(s.seconds() - from_s, 0.0), share = length / s.seconds();
+  // Mean square of slope max(t - from, 0) about its mean, unless the drift is another curve.
+  const double square =
+      std::max(std::pow(slope * length, 2) * share * (1.0 / 3 - share / 4), rms * rms);
+  const double intervals = static_cast<double>(s.intervals());
+  const double power = 2 * s.spectrum.row(axis).squaredNorm() / (intervals * intervals);
+  const double all = static_cast<double>(outputs) * gap.measured_rms * gap.measured_rms;
+  gap.axis[axis] = std::hypot(gap.axis[axis], std::sqrt(square / std::max(power, 1e-300)));
+  if (gap.axis[axis] > gap.worst) {
+    gap.worst = gap.axis[axis];
+    gap.worst_axis = static_cast<int>(axis);
+  }
+  gap.overall = std::hypot(gap.overall, std::sqrt(square / std::max(all, 1e-300)));
+}
+
+}  // namespace
+
+void add_ramps_to_gaps(const Plant& plant, const std::vector<RecordSegment>& segments,
+                       std::size_t holdout_from, Diagnosis& d) {
+  Index outputs = 0;
+  for (Index a = 0; a < plant.axis_count(); ++a) outputs += is_output(plant, a);
+  // Starts with the last one: its gap is the one before the search.
+  for (auto found = d.effects.rbegin(); found != d.effects.rend(); ++found) {
+    if (found->ramp_mps3.empty()) continue;
+    found->after = mean_gap(d.before, holdout_from);
+    for (std::size_t r = 0; r < d.before.size(); ++r)
+      add_ramp(segments[r], found->chosen.place.channel, found->ramp_mps3[r], found->ramp_from_s[r],
+               r < found->drift_rms_mps2.size() ? found->drift_rms_mps2[r] : 0, outputs,
+               d.before[r]);
+    found->before = mean_gap(d.before, holdout_from);
+  }
 }
 
 }  // namespace framewatch::estimator

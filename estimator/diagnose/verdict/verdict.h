@@ -13,40 +13,48 @@ const char* verdict_word(Verdict verdict);
 /// Ratio of misfit to its expectation below which a model is adequate.
 constexpr double kAdequate = 1.25;
 
-/// Whether every segment fits a linear building of its own, and not one together. linear: the model
-/// of all.
+/// Returns true if every segment fits a separate linear building, but not one common building.
+/// linear: the model of all segments.
 bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_before);
 
-/// Marks the effects as approximate where more than noise is left, beyond chance.
+/// Marks the effects as approximate if more than noise is left, beyond chance.
 void mark_approximate(const Fitter& fitter, Diagnosis& out);
 
-/// The model without the effects from `first` on.
+/// Returns the model without the effects from `first` on.
 Model with_first(const Model& model, const std::vector<FoundEffect>& effects, std::size_t first,
                  const Plant& plant);
 
-/// Sets Diagnosis::before and after, and before and after of its effects in their order: gaps of
-/// models fitted to the segments before `options.holdout_from` alone, as they are judged
-/// (judged_fit).
+/// Sets Diagnosis::before and after, and before and after of its effects in their order: the gaps
+/// of models fitted by judged_fit() to the segments before `options.holdout_from`.
 void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out);
 
-/// Sets Diagnosis::leading from its rejected trials; after set_gaps().
+/// Sets Diagnosis::leading from its rejected trials. Call it after set_gaps().
 void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out);
 
-/// Takes every name back whose model is worse than none: a gap above 100 % in any record, or, held
-/// out, above the one before by more than a tenth; and that of a law of one place that is alone,
-/// leaves a held-out gap of more than 2.5 times its floor, and is not of the kind that the force
-/// there is known to be. Whether it did.
+/// Withdraws every name if the model is worse than the one without: a gap above 100 % in any
+/// record, or a held-out gap more than a tenth larger. Also withdraws a single law at one place
+/// that leaves a held-out gap above 2.5 times its floor and is not of the known kind of force
+/// there. Returns true if it withdrew names.
 bool withdraw_worse(std::size_t holdout_from, Diagnosis& out);
 
-/// How far a name is to be trusted.
+/// Confidence grade of a name.
 enum class Grade {
-  established,  ///< nothing else comes near, and nothing but noise is left beside it
-  leading,      ///< the best of several, or of what is left something else is the cause
+  established,  ///< no rival comes near, and only noise is left
+  leading,      ///< the best of several, or another cause remains in the residual
 };
 Grade grade_of(const FoundEffect& effect);
 const char* grade_word(Grade grade);
 
 /// Sets Diagnosis::verdict and reason.
 void judge(const Fitter& fitter, Diagnosis& out);
+
+/// Subtracts the ramps of the configuration (DiagnosisOptions::known) and those it finds from the
+/// segments. Returns the ramps that it found.
+std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions& options,
+                                      std::vector<RecordSegment>& segments);
+
+/// Adds the ramps, which lie below the band, to the gap before the diagnosis.
+void add_ramps_to_gaps(const Plant& plant, const std::vector<RecordSegment>& segments,
+                       std::size_t holdout_from, Diagnosis& diagnosis);
 
 }  // namespace framewatch::estimator

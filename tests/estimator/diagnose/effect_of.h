@@ -23,7 +23,7 @@ inline estimator::EffectPlace node_place(int frame, int story = 1) {
   return out;
 }
 
-/// From a node down to another one on the same frame; story 0: the ground.
+/// Returns the place between a node and a lower one on the same frame; story 0: the ground.
 inline estimator::EffectPlace pair_place(int frame, int story = 1, int to_story = 0) {
   estimator::EffectPlace out = frame_place(frame, story);
   out.kind = estimator::PlaceKind::node_pair;
@@ -69,7 +69,7 @@ inline estimator::EffectPlace channel_place(int channel, int with_channel = -1) 
   return out;
 }
 
-/// A free value of an effect, without a prior.
+/// Returns a free value of an effect, without a prior.
 inline estimator::LawParameter parameter_of(double value) {
   estimator::LawParameter out;
   out.value = value;

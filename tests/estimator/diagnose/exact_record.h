@@ -5,7 +5,7 @@
 
 namespace framewatch::test {
 
-/// What perfect sensors of the small building read with these effects.
+/// Returns the readings of perfect sensors of the small building with these effects.
 inline Eigen::MatrixXd exact_record(const Small& small,
                                     const std::vector<estimator::Effect>& effects,
                                     std::uint64_t seed) {
@@ -16,7 +16,7 @@ inline Eigen::MatrixXd exact_record(const Small& small,
   return out;
 }
 
-/// Of the building as it is, without effects.
+/// Returns the readings without effects.
 inline estimator::Model true_model(const Small& small, const estimator::Plant& plant) {
   estimator::Model out = initial_model(plant);
   out.theta = small.truth;
@@ -31,13 +31,13 @@ inline estimator::Effect with_values(estimator::EffectKind kind,
   return out;
 }
 
-/// An effect as the simulator has it, and as a model has it.
+/// An effect in the simulator's form and in the model's form.
 struct EffectTwins {
   estimator::Effect simulated;
   estimator::ModelEffect modelled;
 };
 
-/// A cubic spring at a frame, N/m^3; the model's force is that at 1 cm.
+/// Returns a cubic spring at a frame, N/m^3; the model's force is that at 1 cm.
 inline EffectTwins cubic_spring(int frame, double k3) {
   constexpr double kDeformation_m = 0.01;
   estimator::ModelEffect e = effect_of(estimator::LawForm::power, frame_place(frame),

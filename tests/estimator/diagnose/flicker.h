@@ -10,15 +10,15 @@
 
 namespace framewatch::test {
 
-/// 1/f noise of so many times the white noise that is believed, at corner_hz as strong: a sum of
-/// noises that forget in steps of four.
+/// Returns 1/f noise that equals the believed white noise at corner_hz: a sum of low-pass noises
+/// whose corners differ by factors of four.
 inline Eigen::VectorXd flicker(Eigen::Index samples, double corner_hz, std::uint64_t seed) {
   constexpr int kParts = 7;
   constexpr double kStep = 4;
   estimator::Random random(seed);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(samples);
-  // A part of unit power at f0 has the density 2 f0 / (pi (f^2 + f0^2)); of all in steps of four
-  // the sum is about 1 / (f ln 4).
+  // A part of unit power at f0 has the density 2 f0 / (pi (f^2 + f0^2)). The sum over factors of
+  // four is about 1 / (f ln 4).
   const double power = 2 * corner_hz * std::log(kStep) / kRate_hz;
   double f0 = 0.25 * kRate_hz;
   for (int part = 0; part < kParts; ++part, f0 /= kStep) {

@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "estimator/diagnose/fit/unknowns.h"
-#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/trials/trial.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::test {
 
-/// A model that was fitted to a record, and trials with costs as a test wants them.
+/// A model fitted to a record, and trials with chosen costs.
 struct HandMade {
   Recorded recorded;
   estimator::FitResult now;
@@ -24,7 +24,7 @@ struct HandMade {
     return {recorded.fitter, now, without, one_after_another, [](const std::string&) {}};
   }
 
-  /// A trial that was fitted to the end, `cheaper` than the model; no effect in it yet.
+  /// Returns a complete trial, `cheaper` than the model, with no effect in it yet.
   estimator::Trial trial(estimator::EffectKind kind, double cheaper) const {
     estimator::Trial out;
     out.kind = kind;

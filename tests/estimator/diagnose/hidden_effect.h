@@ -42,7 +42,7 @@ inline estimator::EffectPlace at_crossing(int crossing) {
   return out;
 }
 
-/// values: in the catalogue's order.
+/// values: in the catalog's order.
 inline estimator::Effect effect_of(estimator::EffectKind kind, const estimator::EffectPlace& place,
                                    std::initializer_list<double> values) {
   estimator::Effect out = make_effect(kind, place);
@@ -50,7 +50,7 @@ inline estimator::Effect effect_of(estimator::EffectKind kind, const estimator::
   return out;
 }
 
-/// What the axes of the small building read, one record a seed.
+/// Returns the readings of the small building, one record per seed.
 inline std::vector<Eigen::MatrixXd> records_with(const std::vector<estimator::Effect>& effects,
                                                  std::initializer_list<std::uint64_t> seeds = {1}) {
   const Small small;
@@ -83,7 +83,7 @@ struct Recorded {
 
   estimator::FitResult linear() const { return fitter.fit(initial_model(plant), {}, {}); }
 
-  /// What is left when this place may do anything.
+  /// Returns the localization with an arbitrary signal at this place.
   estimator::Localisation freed(const estimator::EffectPlace& place) const {
     constexpr int kSteps = 6;
     const estimator::Model model = linear().model;

@@ -7,7 +7,7 @@
 
 namespace framewatch::test {
 
-/// The small building with a floor that is believed rigid.
+/// The small building with a floor that is declared rigid.
 inline Small rigid_small() {
   Small out;
   const Eigen::VectorXd frames = out.truth.head(4);
@@ -20,7 +20,7 @@ inline Small rigid_small() {
   return out;
 }
 
-/// One frame of one story, that is a single mass on a spring.
+/// One frame of one story: a single mass on a spring.
 struct SingleMass {
   estimator::Structure structure = Small::one_story();
   std::vector<estimator::SensorAxis> axes;
@@ -41,8 +41,8 @@ struct SingleMass {
   }
 };
 
-/// Stories of Small's plan, one on the other, of its design; an axis on every frame of every floor:
-/// eleven are a large building (Plant::is_large).
+/// Stories with Small's plan and design, one on top of the other, with an axis on every frame of
+/// every floor. Eleven are a large building (Plant::is_large).
 inline Small tower(int stories) {
   const Small one;
   Small out;

@@ -50,14 +50,14 @@ struct Small {
     return s;
   }
 
-  /// What the axes read with these effects.
+  /// Returns the readings of the axes with these effects.
   Eigen::MatrixXd record(const std::vector<estimator::Effect>& effects, std::uint64_t seed) const {
     return record(estimator::ResponseStream(structure, table, truth, oblique_motion(seed),
                                             {kRate_hz}, {}, {}, effects),
                   seed);
   }
 
-  /// The same with a law beyond the catalogue in a frame.
+  /// Returns the readings with a law in a frame that the catalog does not have.
   Eigen::MatrixXd record_with_law(int frame, std::unique_ptr<estimator::ElementLaw> law,
                                   std::uint64_t seed) const {
     const estimator::ResponseOptions options{kRate_hz};
@@ -71,7 +71,7 @@ struct Small {
         seed);
   }
 
-  /// What the axes read of a response, with their noise.
+  /// Returns the readings of a response, with noise.
   Eigen::MatrixXd record(estimator::ResponseStream stream, std::uint64_t seed) const {
     estimator::Random random(seed + 1000);
     const auto count = static_cast<Eigen::Index>(axes.size());

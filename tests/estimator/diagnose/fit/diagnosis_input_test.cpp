@@ -63,7 +63,7 @@ TEST(DiagnosisInput, RecordsAreTooShortOrWithoutExcitation) {
   EXPECT_EQ(fault(), SegmentFault::no_excitation);
 }
 
-/// The middle of a record, its floors `late` instants late.
+/// Returns the middle of a record, with its floors `late` instants late.
 Eigen::MatrixXd with_late_floors(const Eigen::MatrixXd& record, Eigen::Index late) {
   constexpr Eigen::Index kFloors = 4, kMargin = 100;
   const Eigen::Index rows = record.rows() - 2 * kMargin;

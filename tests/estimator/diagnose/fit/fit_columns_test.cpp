@@ -16,11 +16,11 @@ using Eigen::VectorXd;
 using test::effect_of;
 using test::Small;
 
-constexpr double kDifference = 0.1;  // units of an unknown, either way
+constexpr double kDifference = 0.1;  // units of an unknown, in each direction
 constexpr double kTolerance = 3e-3;  // of a column
-constexpr double kOfOneSide = 0.02;  // of an effect's values, which are differences to one side
+constexpr double kOfOneSide = 0.02;  // of an effect's values, which use one-sided differences
 
-/// What an unknown's change does to the whitened residual, weights and law motion held.
+/// Returns the change of the whitened residual by an unknown, with weights and law motion held.
 VectorXd difference(const Plant& plant, const Model& model, const RecordSegment& segment,
                     const Whitened& at, const Unknown& unknown, int ratio) {
   const auto residual = [&](double change) {
@@ -32,8 +32,8 @@ VectorXd difference(const Plant& plant, const Model& model, const RecordSegment&
   return (residual(kDifference) - residual(-kDifference)) / (2 * kDifference);
 }
 
-/// Columns hold an effect as it is: what it makes of the stiffnesses that it goes with, or of the
-/// readings that it mixes, is left out.
+/// True if a column leaves out this dependence: of an effect on stiffnesses, or on the readings
+/// that it mixes.
 bool held(const ModelEffect& effect, const Plant& plant, const Unknown& unknown) {
   switch (effect.form) {
     case LawForm::rocking:
@@ -60,7 +60,7 @@ TEST_P(FitColumns, AreTheDerivativesOfTheResidual) {
   const int ratio = steps_per_sample(plant, segment.rate_hz);
   const ModelEffect effect = one_of_every_form()[GetParam()];
   Model model = test::with_effects(test::true_model(small, plant), {effect});
-  // Away from where everything is zero.
+  // A point where nothing is zero.
   model.mass_change[1] = 0.01;
   model.gain[2] = -0.01;
   model.clock_s[3] = 0.4e-3;
@@ -108,7 +108,7 @@ std::vector<ModelEffect> one_of_every_form() {
   };
   out[0].deformation = 0.01;
   out[4].rate = 0.1;
-  out[16].parameters[0].step = 2e-5;  // Hz: its phase runs away over the record
+  out[16].parameters[0].step = 2e-5;  // Hz: its phase grows over the record
   return out;
 }
 
@@ -136,5 +136,94 @@ TEST(FitColumnsOfRecords, OnlyARecordsOwnValuesMoveIt) {
   EXPECT_EQ(others, 2);
 }
 
+using Kind = Unknown::Kind;
+
+constexpr int kFrame = 2, kOther = 0;  // parallel to y, to x
+
+struct Case {
+  Small small;
+  Plant plant = small.plant();
+  test::EffectTwins twins = test::cubic_spring(kFrame, 2e11);
+  Model model = test::with_effects(test::true_model(small, plant), {twins.modelled});
+};
+
+Unknown unknown_of(Kind kind, int index) {
+  Unknown out{kind, index};
+  return out;
+}
+
+TEST(RunColumns, WhatMovesARunIsAlongItsLaws) {
+  Case c;
+  const auto moves = [&](Kind kind, int index) {
+    return moves_run(c.plant, c.model, unknown_of(kind, index));
+  };
+  EXPECT_TRUE(moves(Kind::theta, c.plant.table.frame_stiffness(1, kFrame)));
+  EXPECT_TRUE(moves(Kind::theta, c.plant.table.frame_stiffness(1, 3)));  // next to it
+  EXPECT_FALSE(moves(Kind::theta, c.plant.table.frame_stiffness(1, kOther)));
+  EXPECT_FALSE(moves(Kind::theta, c.plant.table.frame_damping(1, kFrame)));
+  EXPECT_FALSE(moves(Kind::theta, c.plant.table.panel_stiffness(1, 0)));
+  EXPECT_TRUE(moves(Kind::mass, kFrame));
+  EXPECT_FALSE(moves(Kind::mass, kOther));
+  EXPECT_FALSE(moves(Kind::gain, kFrame));
+  EXPECT_FALSE(moves(Kind::clock, kFrame));
+  EXPECT_TRUE(moves(Kind::parameter, 0));
+  EXPECT_TRUE(moves(Kind::record_parameter, 0));
+  c.model.effects.clear();
+  EXPECT_FALSE(moves(Kind::theta, c.plant.table.frame_stiffness(1, kFrame)));
+  // A law of a panel moves with both directions.
+  c.model.effects = {test::effect_of(LawForm::friction, test::panel_place(0), {10, 1e-3})};
+  EXPECT_TRUE(moves(Kind::theta, c.plant.table.frame_stiffness(1, kOther)));
+}
+
+/// With derivatives through the run, the equations change as their run does.
+TEST(RunColumns, AreTheDerivativesOfTheRun) {
+  constexpr double kTolerance = 0.02;
+  constexpr double kDifference = 1e-3;  // of a stiffness, of its design
+  const Case c;
+  const RecordSegment segment =
+      c.small.segments({test::exact_record(c.small, {c.twins.simulated}, 1)}).front();
+  const int ratio = steps_per_sample(c.plant, segment.rate_hz);
+  Whitened at = whiten(c.plant, c.model, segment, 0, Forcing::simulated, {}, ratio);
+  ASSERT_TRUE(at.good);
+  at.motion = at.calibrated;
+  const auto residual = [&](const Unknown& u, double change) {
+    Model moved = c.model;
+    set_value(moved, u, value_of(c.model, u) + change);
+    auto tracks = tracks_of(c.plant, moved, segment, 0, Forcing::simulated, {}, ratio);
+    return whiten(c.plant, moved, segment, 0, std::move(*tracks), ratio, at.weights).residual;
+  };
+  const std::vector<Unknown> all = unknowns_of(c.plant, c.model, {0, 0, 0});
+  for (const bool through_run : {true, false}) {
+    const Columns columns = columns_of(c.plant, c.model, segment, 0, at, all, ratio, through_run);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!moves_run(c.plant, c.model, all[i])) continue;
+      const double change = all[i].kind == Kind::theta ? kDifference : 1;
+      const VectorXd expected =
+          (residual(all[i], change) - residual(all[i], -change)) / (2 * change);
+      const double miss =
+          (whole_column(c.plant, at, columns, static_cast<Index>(i)) - expected).norm() /
+          expected.norm();
+      if (through_run)
+        EXPECT_LT(miss, kTolerance) << i;
+      else
+        EXPECT_GT(miss, kTolerance) << i;
+    }
+  }
+}
+
+TEST(RunColumns, ThereIsNoneWhereTheChangedModelRunsAway) {
+  Case c;
+  const RecordSegment segment = c.small.segments({test::exact_record(c.small, {}, 1)}).front();
+  c.model.effects = {test::effect_of(LawForm::power, test::frame_place(kFrame), {0, 1})};
+  const Whitened at = whiten(c.plant, c.model, segment, 0, Forcing::simulated, {}, 2);
+  ASSERT_TRUE(at.good);
+  Unknown stiffness = unknown_of(Kind::parameter, 0);
+  stiffness.scale = 1e4;
+  EXPECT_TRUE(run_column(c.plant, c.model, segment, 0, at, stiffness, 2));
+  stiffness.scale = -1e9;
+  EXPECT_FALSE(run_column(c.plant, c.model, segment, 0, at, stiffness, 2));
+}
+
 }  // namespace fit_columns_test
+
 }  // namespace framewatch::estimator

@@ -50,14 +50,14 @@ TEST(Fit, MayHoldWhatIsTolerated) {
   EXPECT_EQ(held.model.gain[1], start.gain[1]);
   EXPECT_NE(held.model.gain[2], start.gain[2]);
   EXPECT_NE(held.model.theta, start.theta);
-  // What is held has its cost all the same.
+  // Held values contribute to the cost all the same.
   EXPECT_DOUBLE_EQ(held.cost, held.total_misfit() + fitter.prior_cost(held.model));
 }
 
-/// A wrong gradient lets a fit creep, and what it leaves is taken for an effect.
+/// With a wrong gradient a fit creeps, and its residual looks like an effect.
 TEST(Fit, GradientIsThatOfTheMisfit) {
   constexpr double kStep = 0.01;       // of an unknown's deviation
-  constexpr double kTolerance = 2e-3;  // of the greatest along one deviation
+  constexpr double kTolerance = 2e-3;  // of the largest along one deviation
   const Small small;
   const Plant plant = small.plant();
   const std::vector<RecordSegment> segments = small.segments({small.record({}, 1)});
@@ -97,7 +97,7 @@ TEST(Fit, StepsStayWithinBoundsAndTheOthersMakeTheBestOfIt) {
   const Eigen::Vector3d wanted(-2, 1, 0.5);
   const Eigen::VectorXd step = bounded_step(normal, normal * wanted, model, unknowns);
   EXPECT_DOUBLE_EQ(step[0], -0.5);
-  // Of the quadratic with the first held at its bound.
+  // The minimum of the quadratic with the first unknown held at its bound.
   const Eigen::Vector2d others = wanted.tail<2>() - normal.bottomRightCorner<2, 2>().inverse() *
                                                         normal.block<2, 1>(1, 0) *
                                                         (-0.5 - wanted[0]);

@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/law/sliding.h"
+#include "estimator/diagnose/law/law.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {
 namespace free_run_start_test {
 
 constexpr int kFrame = 2;         // of 8e6 N/m; without friction it deforms by about 16 mm
-constexpr double kWithin = 1.25;  // the forces that are tried are 1.09 times as large each
+constexpr double kWithin = 1.25;  // tried forces differ by factors of 1.09
 
 class FrictionStart : public testing::TestWithParam<double> {};
 
@@ -48,7 +48,7 @@ TEST_P(FrictionStart, OfFrictionThatSticksIsNearItsForce) {
   EXPECT_NEAR(end.model.effects[0].parameters[FrictionIndex::fc].plain() / force_n, 1, 0.02);
 }
 
-// The last two hold most of the time.
+// The last two stick most of the time.
 INSTANTIATE_TEST_SUITE_P(Forces, FrictionStart, testing::Values(1e4, 2.5e4, 4e4));
 
 }  // namespace free_run_start_test

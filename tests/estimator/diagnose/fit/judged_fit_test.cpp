@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/model/modal_damping.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "tests/estimator/diagnose/exact_record.h"
@@ -26,13 +26,13 @@ using test::Small;
 constexpr double kWithin = 1.05;  // of the best free run of the class
 constexpr Tolerances kExact{0, 0, 0};
 
-/// A fit that shares nothing with the one under test: Newmark's scheme, differences in the band of
-/// the record, Levenberg's method over the logarithms of all stiffnesses and dampings.
+/// An independent fit: Newmark's scheme, differences in the band of the record, Levenberg's method
+/// over the logarithms of all stiffnesses and dampings.
 class Independent {
  public:
   Independent(const Small& small, const RecordSegment& segment) : small_(small), s_(segment) {}
 
-  /// The least free-run NRMSE, from a start.
+  /// Returns the smallest free-run NRMSE, from a start.
   double least_gap(VectorXd theta) const {
     constexpr int kSteps = 40;
     constexpr double kChange = 1e-4;
@@ -66,7 +66,7 @@ class Independent {
   }
 
  private:
-  /// Real and imaginary parts of the frames' axes in the band.
+  /// Returns real and imaginary parts of the frames' axes in the band.
   VectorXd in_band(const MatrixXd& signals) const {
     VectorXd out(2 * 4 * s_.bins());
     for (Index a = 0; a < 4; ++a) {
@@ -136,7 +136,8 @@ TEST(JudgedFit, IsAsGoodAsTheBestFreeRunOfItsClass) {
   }
 }
 
-/// Ratios of the modes that dashpots between floors do not make; a strong cubic spring has none.
+/// Modal ratios that dashpots between floors cannot produce. With a strong cubic spring there are
+/// none.
 TEST(JudgedFit, DampingMayBeNoneOfDashpots) {
   constexpr double kClearly = 0.97;
   for (const bool of_modes : {true, false}) {

@@ -5,9 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/fit/fit_columns.h"
 #include "estimator/diagnose/fit/normal_equations.h"
-#include "estimator/diagnose/fit/run_columns.h"
-#include "estimator/diagnose/fit/sampled_bins.h"
 #include "estimator/diagnose/locate/localise.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/estimator/diagnose/exact_record.h"
@@ -95,7 +94,7 @@ TEST(LargeBuilding, SampledBinsStandForAll) {
     EXPECT_NEAR(square(u, u) / columns.col(u).squaredNorm(), 1, kOff) << u;
 }
 
-/// A resonance that is narrower than the bins' distances from each other on average.
+/// A resonance narrower than the mean distance of the sampled bins.
 TEST(LargeBuilding, BinsOfANarrowEffectAreAmongTheSampled) {
   constexpr double kOff = 0.1;
   const Case c;
@@ -120,7 +119,7 @@ TEST(LargeBuilding, BinsOfANarrowEffectAreAmongTheSampled) {
 }
 
 TEST(LargeBuilding, AFitComesToTheNoise) {
-  constexpr double kLow = 0.85, kHigh = 1.03;  // fitted values take their share
+  constexpr double kLow = 0.85, kHigh = 1.03;  // fitted values explain a share of the noise
   const Case c;
   FitOptions options;
   options.max_steps = 8;
@@ -131,7 +130,7 @@ TEST(LargeBuilding, AFitComesToTheNoise) {
   EXPECT_LT(ratio, kHigh);
 }
 
-/// The modes of twenty stories take seconds, and a run much less.
+/// The modes of twenty stories take seconds, a run much less.
 TEST(LargeBuilding, AStepThroughRunsComputesModesOnce) {
   constexpr int kStory = 6, kFrame = 2;
   const Case c;
@@ -170,7 +169,7 @@ TEST(LargeBuilding, ThePlaceOfAHiddenLawIsFoundAmongAll) {
       once.begin(), once.end(),
       [](const Localisation& a, const Localisation& b) { return a.ratio < b.ratio; });
   EXPECT_EQ(best->candidate_places.front().place, place);
-  // It was among those that were looked at closer.
+  // It was among those with a conjugate-gradient step.
   const Localisation closer =
       localise_once(c.fitter, at, now.model, {best->candidate_places}).front();
   EXPECT_NEAR(closer.ratio, best->ratio, 1e-9);

@@ -133,7 +133,7 @@ TEST(LawTracks, AreThoseOfElementLawsOnly) {
   m.model.effects = {
       effect_of(LawForm::power, test::frame_place(0), {-5 * m.small.truth.maxCoeff(), 1})};
   EXPECT_EQ(count(Forcing::measured), 1);
-  EXPECT_EQ(count(Forcing::simulated), -1);  // it runs away
+  EXPECT_EQ(count(Forcing::simulated), -1);  // it diverges
 }
 
 }  // namespace law_tracks_test

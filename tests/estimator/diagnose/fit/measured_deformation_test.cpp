@@ -27,7 +27,8 @@ double velocity(double t) {
           0.5 * kSlow_hz * std::cos(2 * M_PI * kSlow_hz * t));
 }
 
-/// One component whose first axis measures displacement; the band begins above its slow motion.
+/// Returns one component whose first axis measures displacement. The band begins above its slow
+/// motion.
 RecordSegment segment_of(const std::vector<char>& displaced) {
   Eigen::MatrixXd samples = Eigen::MatrixXd::Zero(1501, 2);
   for (Index i = 0; i < samples.rows(); ++i)
@@ -50,7 +51,7 @@ TEST(MeasuredDeformation, OfAPrescribedMotionKeepsWhatIsSlowerThanTheBand) {
   }
 }
 
-/// Accelerations of which a part is faster than the band.
+/// Accelerations with a part that is faster than the band.
 TEST(MeasuredDeformation, KeepsWhatIsFasterThanTheBandAndNothingSlower) {
   constexpr double kFaster_hz = 20;
   const auto of = [](double slow_mps2, double fast_mps2, double t) {

@@ -36,7 +36,7 @@ MatrixXd whole_columns(const Linearised& at, std::size_t record) {
   return out;
 }
 
-/// Columns without what end terms explain, one by one.
+/// Returns the columns with the end terms projected out, one by one.
 MatrixXd without_ends_of(const Linearised& at, std::size_t record) {
   MatrixXd out = whole_columns(at, record);
   for (Index u = 0; u < out.cols(); ++u)
@@ -99,7 +99,7 @@ TEST(NormalEquations, EffectsAmongTheUnknownsHaveTheirPlaces) {
   const Index effect = whole.cols() - 1;
   ASSERT_LT(at.columns[0].direction[static_cast<std::size_t>(effect)], 0);
   ASSERT_GE(at.columns[0].direction.front(), 0);
-  const std::vector<Index> kept{2, effect, 12, 5};  // before and behind it
+  const std::vector<Index> kept{2, effect, 12, 5};  // before and after it
   MatrixXd own(whole.rows(), 5);
   for (Index i = 0; i < 4; ++i) own.col(i) = whole.col(kept[static_cast<std::size_t>(i)]);
   own.col(4) = at.systems[0].residual;
@@ -136,7 +136,7 @@ TEST(NormalEquations, PriorPullsTowardsWhatIsBelieved) {
     const Unknown& unknown = at.unknowns[u];
     const auto i = static_cast<Index>(u);
     EXPECT_NEAR(at.prior[i], at.level / (2 * unknown.sigma * unknown.sigma), 1e-9 * at.level);
-    EXPECT_NEAR(at.pull[i], at.prior[i] * (unknown.centre - value_of(c.model, unknown)),
+    EXPECT_NEAR(at.pull[i], at.prior[i] * (unknown.center - value_of(c.model, unknown)),
                 1e-9 * at.level);
   }
   EXPECT_LT(at.pull[0], 0);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/fit/linearised.h"
+#include "estimator/diagnose/fit/fit_columns.h"
 #include "estimator/diagnose/fit/unknowns.h"
 #include "tests/estimator/diagnose/exact_record.h"
 #include "tests/estimator/diagnose/other_buildings.h"
@@ -19,7 +19,7 @@ long count(const std::vector<Unknown>& unknowns, Kind kind) {
                        [&](const Unknown& u) { return u.kind == kind; });
 }
 
-/// A drift of two records, whose exponent-like value is held.
+/// Returns a drift of two records with a held parameter.
 Model with_drift(const Plant& plant) {
   ModelEffect drift = test::effect_of(LawForm::changing, test::frame_place(3), {-4e5}, {3, 2});
   drift.record_parameters.push_back({test::parameter_of(5), test::parameter_of(1)});
@@ -81,9 +81,9 @@ TEST(Unknowns, BeginAtTheMiddleOfWhatIsBelieved) {
   const Plant plant = small.plant();
   const Model model = initial_model(plant);
   for (const Unknown& u : unknowns_of(plant, model, {})) {
-    EXPECT_NEAR(value_of(model, u), u.centre, 1e-12) << u.index;
-    EXPECT_LT(u.low, u.centre);
-    EXPECT_GT(u.high, u.centre);
+    EXPECT_NEAR(value_of(model, u), u.center, 1e-12) << u.index;
+    EXPECT_LT(u.low, u.center);
+    EXPECT_GT(u.high, u.center);
     EXPECT_GT(u.sigma, 0);
   }
 }

@@ -6,10 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/fit/axis_readings.h"
 #include "estimator/diagnose/fit/law_tracks.h"
+#include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/numeric/complex.h"
+#include "estimator/simulate/random.h"
 #include "tests/estimator/diagnose/exact_record.h"
 
 namespace framewatch::estimator {
@@ -47,7 +48,7 @@ TEST(Whitened, OfTheTrueModelNoiseIsLeftWithUnitVariance) {
   const double left = static_cast<double>(n * w.bins() - 2 * n);
   EXPECT_NEAR(w.misfit, left, kSigmas * std::sqrt(left));
   EXPECT_DOUBLE_EQ(w.misfit, w.rest.squaredNorm());
-  // In every equation alike, in real as in imaginary parts: no row holds more than its share.
+  // Equal in every equation, in real and imaginary parts: no row has more than its share.
   for (Index row = 0; row < 2 * n; ++row) {
     double power = 0;
     for (Index b = 0; b < w.bins(); ++b) power += std::pow(w.rest[2 * n * b + row], 2);
@@ -83,14 +84,14 @@ TEST(Whitened, OperationIsThatOfTheEquations) {
                   MatrixXd(c.plant.building.act.col(e) * c.plant.building.sense.row(e));
     const MatrixXcd& d = w.operation[static_cast<std::size_t>(b)];
     EXPECT_LT((d - expected).norm(), kRounding * expected.norm());
-    // Rows are whitened as the operation on the spectrum says.
+    // Rows are whitened in the order of the operation on the spectrum.
     const VectorXcd row = w.weights->whitener(b).whole() * d * w.calibrated.col(b);
     EXPECT_LT((w.residual.segment(8 * b, 4) - row.real()).norm(), kRounding * (1 + row.norm()));
     EXPECT_LT((w.residual.segment(8 * b + 4, 4) - row.imag()).norm(), kRounding * (1 + row.norm()));
   }
 }
 
-/// Docs/equations.md (34): of the motion that is shown nothing is left but end terms.
+/// Docs/equations.md (34): the shown motion leaves only end terms.
 TEST(Whitened, ShownMotionFollowsTheEquations) {
   constexpr double kLeft = 1e-6, kNearer = 0.8;
   const Case c;
@@ -99,7 +100,7 @@ TEST(Whitened, ShownMotionFollowsTheEquations) {
   for (Index b = 0; b < w.bins(); ++b)
     forces.col(b) = w.operation[static_cast<std::size_t>(b)] * w.motion.col(b);
   EXPECT_LT(w.weights->without_ends(whiten_rows(w, forces)).norm(), kLeft * w.rest.norm());
-  // It is nearer to what perfect sensors read.
+  // It is nearer to the readings of perfect sensors.
   const MatrixXcd exact = c.small.segments({test::exact_record(c.small, {}, 1)}).front().spectrum;
   EXPECT_LT((w.motion - exact).norm(), kNearer * (w.calibrated - exact).norm());
 }
@@ -163,7 +164,7 @@ TEST(Whitened, ForcesAndReadingsThatMayBeAnythingDoNotCount) {
   const double chance = kChance * std::sqrt(c.whitened().misfit);
   struct Free {
     ModelEffect effect;
-    int axis;  // whose reading is wrong
+    int axis;  // with a wrong reading
   };
   for (const Free& f : {Free{effect_of(LawForm::clipped, test::channel_place(1), {}), 1},
                         Free{effect_of(LawForm::clipped, test::channel_place(4), {}), 4}}) {
@@ -197,5 +198,47 @@ TEST(Whitened, WhatCannotBeComputedIsNotGood) {
   EXPECT_FALSE(c.whitened(away).good);
 }
 
+constexpr double kProductRounding = 1e-12;
+constexpr Index kEquations = 4, kAxes = 6;
+
+/// Products of all bins at once equal those of each bin's operation, stored or computed on demand.
+TEST(Operations, MultiplyAllBinsAtOnce) {
+  const test::Small small;
+  const Plant plant = small.plant();
+  const Model model = test::true_model(small, plant);
+  ASSERT_EQ(plant.equations(), kEquations);
+  ASSERT_EQ(plant.axis_count(), kAxes);
+  Random random(3);
+  const auto some = [&](Index rows, Index columns) {
+    return MatrixXd(MatrixXd::NullaryExpr(rows, columns, [&] { return random.normal(); }));
+  };
+  const MatrixXd mass = some(kEquations, kAxes), stiffness = 50 * some(kEquations, kAxes),
+                 damping = some(kEquations, kAxes);
+  const EffectPlace node = test::node_place(2);
+  const LinearOperation resonator(plant, model,
+                                  effect_of(LawForm::resonator, node, {2, 1.5, 0.05}));
+  const LinearOperation damper(plant, model, effect_of(LawForm::damper, node, {30}));
+  for (const Index bins : {Index{7}, Index{50000}}) {
+    const Eigen::VectorXd w = Eigen::VectorXd::LinSpaced(bins, 3, 40);
+    const Operations operations(mass, stiffness, damping, {resonator, damper}, w);
+    MatrixXcd motion(kAxes, bins), forces(kEquations, bins);
+    motion.real() = some(kAxes, bins);
+    motion.imag() = some(kAxes, bins);
+    forces.real() = some(kEquations, bins);
+    forces.imag() = some(kEquations, bins);
+    const MatrixXcd times = operations.times(motion), back = operations.adjoint_times(forces),
+                    axis = operations.of_axis(3);
+    for (const Index b : {Index{0}, bins / 2, bins - 1}) {
+      const MatrixXcd d = operations[static_cast<std::size_t>(b)];
+      EXPECT_LT((times.col(b) - d * motion.col(b)).norm(), kProductRounding * d.norm());
+      EXPECT_LT((back.col(b) - d.adjoint() * forces.col(b)).norm(), kProductRounding * d.norm());
+      EXPECT_LT((axis.col(b) - d.col(3)).norm(), kProductRounding * d.norm());
+    }
+  }
+  const Operations plain(mass, stiffness, damping, {}, Eigen::VectorXd::LinSpaced(50000, 3, 40));
+  EXPECT_LT((plain.of_axis(2).col(9) - plain[9].col(2)).norm(), kProductRounding * plain[9].norm());
+}
+
 }  // namespace whitened_test
+
 }  // namespace framewatch::estimator

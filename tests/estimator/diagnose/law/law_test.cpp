@@ -73,7 +73,7 @@ TEST(Law, OnlyThoseOfElementsPullThere) {
   }
 }
 
-/// Back and forth, each time farther, so that loops are nested and pass the yield deformation.
+/// Returns cycles of growing amplitude, with nested loops that pass the yield deformation.
 VectorXd growing_cycles(Index steps) {
   VectorXd out(steps);
   for (Index i = 0; i < steps; ++i) {
@@ -83,7 +83,7 @@ VectorXd growing_cycles(Index steps) {
   return out;
 }
 
-/// Forces of the simulator's own law, integrated in steps of a two-hundredth.
+/// Returns the forces of the simulator's law, integrated in steps of a two-hundredth.
 VectorXd simulated_force(ElementLaw& law, const VectorXd& d) {
   constexpr int kFine = 200;
   std::vector<double> z(static_cast<std::size_t>(law.states())), rate = z;
@@ -127,7 +127,7 @@ TEST(Law, HysteresisIsThatOfTheSimulator) {
     LawValues law{c.form, {kStiffness, kYields_m}, 1, 1};
     for (std::size_t i = 0; i < c.shape.size(); ++i) {
       law.p.push_back(c.shape[i]);
-      // The catalogue's corner has no exponent.
+      // The catalog's bilinear law has no exponent.
       const bool corner =
           c.form == LawForm::hysteresis && c.kind == EffectKind::bilinear_hysteresis;
       if (!corner) effect.values[i + 2] = c.shape[i];
@@ -153,7 +153,7 @@ TEST(Law, SlidersThatYieldTogetherAreBilinear) {
   EXPECT_LT((sliders - corner).cwiseAbs().maxCoeff(), 1e-9 * kStiffness * kYields_m);
 }
 
-/// Menegotto and Pinto's curve: its first loading, its slope after a reversal and its end.
+/// Menegotto and Pinto's curve: its first loading, its slope after a reversal and its limit.
 TEST(Law, SteelFollowsItsCurveFromEveryReversal) {
   constexpr double kSharpness = 5;
   const LawValues law{LawForm::asymptotic, {kStiffness, kYields_m, kSharpness, 0}, 1, 1};
@@ -186,7 +186,7 @@ TEST(Law, SlippingJointsAreThoseOfTheSimulator) {
   EXPECT_LT((force - simulated).cwiseAbs().maxCoeff(), 0.01 * most);
 }
 
-/// Area of Masing's loop: 8 times the integral of first loading less 4 times its end.
+/// Area of Masing's loop: 8 times the integral of first loading minus 4 times its end.
 TEST(Law, SlippingJointsLoseWhatTheirLoopSays) {
   constexpr double kExponent = 1.5;
   constexpr Index kSteps = 4000;
@@ -221,8 +221,8 @@ TEST(Law, SlipLocksAwayFromZeroDeformation) {
   EXPECT_GT(force[3] - force[2], 0.5 * 0.1 * kStiffness * kYields_m);
 }
 
-/// A slip zone does not keep friction from yielding: with a tiny yield deformation it moves a
-/// thousand of them in every step.
+/// Friction with a slip zone still yields: its tiny yield deformation is passed a thousand times in
+/// every step.
 TEST(Law, FrictionWithASlipZoneSlidesAtItsForce) {
   constexpr double kTiny_m = 1e-6;
   constexpr Index kSteps = 20000;
@@ -272,7 +272,7 @@ TEST(Law, FrictionThatGivesWayFirstIsThatOfTheSimulator) {
     if (i > kSteps / 8) worst = std::max(worst, std::abs(force[i] - simulated->force(0, 0, 0, z)));
   }
   EXPECT_LT(worst, 0.02 * kForce_n);
-  // At a reversal the force is still that of the sliding before.
+  // At a reversal the force still equals that of the previous sliding.
   const Index reversal = kSteps + kSteps / 4 + 2;
   EXPECT_LT(v[reversal], 0);
   EXPECT_GT(force[reversal], 0.5 * kForce_n);
@@ -302,7 +302,7 @@ TEST(Law, AskingForAForceChangesNothing) {
     asked.force(10 * d, 1, 0);
     asked.force(-d, 1, 0);
     EXPECT_EQ(asked.force(d, 1, 0), silent.force(d, 1, 0));
-    asked.force(-d, 1, 0);  // elsewhere than where the step ends
+    asked.force(-d, 1, 0);  // not where the step ends
     asked.accept(d, 1, 0);
     silent.accept(d, 1, 0);
     EXPECT_EQ(asked.force(-d, 1, 0), silent.force(-d, 1, 0));
@@ -310,7 +310,7 @@ TEST(Law, AskingForAForceChangesNothing) {
   EXPECT_NEAR(asked.force(-0.003, 0, 0), silent.force(-0.003, 7, 7), kRounding);
 }
 
-/// A step that is asked for one end after another ends as one that knew its end.
+/// A step evaluated for several ends gives the same as one evaluated for the last end only.
 TEST(Law, AStepOfHysteresisDoesNotRememberOtherEnds) {
   const std::vector<LawValues> laws{
       {LawForm::hysteresis, {kStiffness, kYields_m, 1.5, 0.4, 0.1, 0.05, -1}, 1, 1},
@@ -338,5 +338,51 @@ TEST(Law, ForceOfAKnownMotionGoesThroughItsTime) {
   EXPECT_EQ(law_force(law, VectorXd(), VectorXd(), 0.25).size(), 0);
 }
 
+LawValues brace(double play_m) {
+  return {LawForm::slack, {kStiffness, kYields_m, play_m}, 1, 1};
+}
+
+VectorXd brace_force(const LawValues& law, const VectorXd& d) {
+  return law_force(law, d, VectorXd::Zero(d.size()), 0.01) / (kStiffness * kYields_m);
+}
+
+TEST(SlackBrace, PullsFromWhereItHasBeen) {
+  VectorXd d(6), expected(6);
+  d << 4, 3.5, 0, 3, 5, -0.5;
+  expected << 1, 0.5, 0, 0, 1, -0.5;  // yields, returns, is slack, is tight again
+  EXPECT_LT((brace_force(brace(0), kYields_m * d) - expected).norm(), kRounding);
+  d << 0.2, -0.3, 0.8, -2, -1.2, 0;
+  expected << 0, 0, 0.5, -1, -0.2, 0;
+  EXPECT_LT((brace_force(brace(0.3 * kYields_m), kYields_m * d) - expected).norm(), kRounding);
+}
+
+/// The simulator takes steps of a tenth.
+TEST(SlackBrace, IsThatOfTheSimulator) {
+  constexpr int kFiner = 10;
+  constexpr Index kSteps = 2000;
+  constexpr double kPlay_m = 0.3 * kYields_m;
+  Effect effect = make_effect(EffectKind::pinching, test::frame_place(0));
+  effect.set("kh_npm", kStiffness);
+  effect.set("dy_m", kYields_m);
+  effect.set("slack", 1);
+  effect.set("play_m", kPlay_m);
+  const auto simulated = make_law(effect, test::Small::one_story());
+  const auto deformation = [](double turn) {
+    return 4 * kYields_m * turn * std::sin(2 * M_PI * 5 * turn);
+  };
+  VectorXd d(kSteps), force(kSteps);
+  for (Index i = 0; i < kSteps; ++i) {
+    for (int fine = 0; fine < kFiner; ++fine)
+      simulated->begin_step(
+          0,
+          deformation((static_cast<double>(i) + static_cast<double>(fine) / kFiner - 1) / kSteps));
+    d[i] = deformation(static_cast<double>(i) / kSteps);
+    force[i] = simulated->force(0, d[i], 0, {}) / (kStiffness * kYields_m);
+  }
+  EXPECT_NEAR(force.maxCoeff(), 1, kRounding);
+  EXPECT_LT((brace_force(brace(kPlay_m), d) - force).cwiseAbs().maxCoeff(), 1e-3);
+}
+
 }  // namespace law_test
+
 }  // namespace framewatch::estimator

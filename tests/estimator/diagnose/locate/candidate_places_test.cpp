@@ -27,7 +27,8 @@ TEST(CandidatePlaces, AreEveryPlaceOnce) {
     Plant plant;
     long axes, elements, floors, nodes, links, crossings, rocking;
   };
-  // A node of the first story is like its frame; one equation does not tell a reading from a force.
+  // A node of the first story equals its frame; one equation cannot distinguish a reading from a
+  // force.
   const Case cases[] = {{Small().plant(), 6, 5, 0, 0, 0, 4, 2},
                         {test::rigid_small().plant(), 6, 4, 1, 0, 0, 4, 2},
                         {test::SingleMass().plant(), 0, 1, 0, 0, 0, 0, 0},
@@ -80,7 +81,7 @@ TEST(CandidatePlaces, TheirBasisIsOrthonormal) {
         candidate_basis(system, bin, {of(Kind::axis), of(Kind::element), of(Kind::rocking)});
     ASSERT_EQ(basis.cols(), 3);
     EXPECT_LT((basis.adjoint() * basis - MatrixXcd::Identity(3, 3)).norm(), kRounding);
-    // What is there already adds nothing.
+    // Repeating a place adds nothing.
     const MatrixXcd twice = candidate_basis(system, bin, {of(Kind::element), of(Kind::element)});
     EXPECT_LT(std::abs(twice.col(0).norm() - 1), kRounding);
     EXPECT_LT(twice.col(1).norm(), kRounding);
@@ -104,13 +105,13 @@ TEST(Contenders, AreNearTheBestAndFewOfAKind) {
   const auto e = [](double ratio) { return left(Kind::element, ratio); };
   EXPECT_EQ(contending({}), 0U);
   EXPECT_EQ(contending({e(1)}), 1U);
-  EXPECT_EQ(contending({e(1), e(1.1), e(1.5)}), 2U);  // the limit of a good one is 1.2
+  EXPECT_EQ(contending({e(1), e(1.1), e(1.5)}), 2U);  // the limit for a good place is 1.2
   EXPECT_EQ(contending({e(3), e(4), e(5), e(6)}), 3U);
   EXPECT_EQ(contending({e(1), e(1), e(1), e(1), e(1)}), 3U);
   EXPECT_EQ(contending({e(1), e(1), e(1), left(Kind::axis, 1), left(Kind::node, 1),
                         left(Kind::crossing, 1)}),
             5U);
-  // Frames that bend do more than the moment by which they are found.
+  // Bending frames do more than the moment that locates them.
   EXPECT_EQ(contending({e(1), e(1.3), left(Kind::rocking, 1.3), left(Kind::rocking, 1.5)}), 2U);
 }
 

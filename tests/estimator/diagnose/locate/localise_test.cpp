@@ -39,7 +39,7 @@ struct Case {
   Localisation localised(const CandidatePlace& place) const {
     return localise(fitter, initial_model(plant), {}, {place}, kSteps);
   }
-  /// What a place leaves beyond noise, in deviations of the misfit under noise.
+  /// Returns the excess of a place's misfit over noise, in standard deviations of noise.
   double beyond_noise(const Localisation& l) const {
     return (l.ratio - 1) * std::sqrt(fitter.expected(l.model) * 0.75);
   }
@@ -48,7 +48,7 @@ struct Case {
 struct Hidden {
   Effect effect;
   Kind kind;
-  EffectPlace place;  // where a candidate has it
+  EffectPlace place;  // of the candidate
 };
 
 std::vector<Hidden> hidden_effects() {
@@ -60,7 +60,7 @@ std::vector<Hidden> hidden_effects() {
        test::panel_place(0)},
       {test::with_values(two_sided_gap, test::frame_place(0), {6e6, 3e-3}), Kind::element,
        test::frame_place(0)},
-      // To the ground in the first story, so like its frame.
+      // To the ground in the first story, so it equals its frame.
       {test::with_values(tuned_mass_damper, test::node_place(3), {3000, 2.2, 0.05}), Kind::element,
        test::frame_place(3)},
       {test::extra_mass(1, 8000).simulated, Kind::crossing, test::crossing_place(1)},
@@ -78,7 +78,7 @@ TEST_P(LocaliseHidden, OnlyItsOwnPlaceLeavesNoise) {
   EXPECT_LT(std::abs(c.beyond_noise(own)), kChance);
   ASSERT_EQ(own.record_ratio.size(), 1U);
   EXPECT_NEAR(own.record_ratio.front(), own.ratio, 1e-6);
-  // A frame of the other direction explains nothing of it.
+  // A frame of the other direction explains none of it.
   const int other = hidden.place.frame == 0 ? 2 : 0;
   const Localisation wrong = c.localised(c.at(Kind::element, test::frame_place(other)));
   EXPECT_GT(wrong.misfit, own.misfit);
@@ -111,14 +111,14 @@ TEST(Localise, OneStepRanksTheRightPlaceFirst) {
   ASSERT_EQ(once.size(), lists.size());
   std::size_t best = 0;
   for (std::size_t i = 0; i < once.size(); ++i) {
-    // What may do anything cannot leave more than before.
+    // An arbitrary signal cannot increase the misfit.
     EXPECT_LT(once[i].misfit, now.cost * 1.001) << i;
-    // A crossing may do all that its frames may.
+    // A crossing can act like each of its frames.
     if (lists[i].front().size() == 1 && once[i].ratio < once[best].ratio) best = i;
   }
   EXPECT_EQ(lists[best].front().kind, Kind::element);
   EXPECT_EQ(lists[best].front().place, test::frame_place(2));
-  // The order in which lists are worked on does not matter.
+  // The order of the lists does not matter.
   std::vector<std::vector<CandidatePlace>> reversed(lists.rbegin(), lists.rend());
   const std::vector<Localisation> again = localise_once(
       c.fitter, at, now.model, reversed, [](int count, const std::function<void(int)>& work) {

@@ -24,7 +24,7 @@ void add_ramp(MatrixXd& record, Index axis, double slope, double from_s) {
     record(i, axis) += slope * std::max(static_cast<double>(i) / test::kRate_hz - from_s, 0.0);
 }
 
-/// One after the other: a record is too short to show what is slow.
+/// Returns the record twice in a row: one record is too short to show slow motion.
 MatrixXd twice(const MatrixXd& record) {
   return record.replicate(2, 1);
 }

@@ -19,12 +19,12 @@ using test::with_values;
 constexpr int kRatio = 4;
 constexpr int kWatched = 2;  // frame whose deformation is compared
 
-/// A law without a force: it shows how its element moves.
+/// Returns a law without a force. It only shows the motion of its element.
 ModelEffect onlooker() {
   return effect_of(LawForm::power, test::frame_place(kWatched), {0, 1});
 }
 
-/// Band of the second derivative of a track's deformation, from its rate.
+/// Returns the band of the second derivative of a track's deformation, from its rate.
 VectorXcd acceleration_of(const LawTrack& track, const RecordSegment& segment) {
   const double per_s = segment.rate_hz * kRatio / 12;
   VectorXd out = VectorXd::Zero(track.v.size());
@@ -39,7 +39,8 @@ RecordSegment segment_of(const Small& small, const MatrixXd& record, Index lead)
                       {0.4 * hz.front(), 1.6 * hz.back()}, {}, lead);
 }
 
-/// How far the run's deformation of the watched frame is from the recorded one, relative.
+/// Returns the relative distance of the run's deformation from the recorded one, at the watched
+/// frame.
 double miss(const Small& small, const MatrixXd& record, const Model& with, Index lead = 0) {
   const Plant plant = small.plant();
   const RecordSegment segment = segment_of(small, record, lead);
@@ -131,7 +132,7 @@ TEST(FreeRun, AHarmonicForceActsFromItsOnset) {
   EXPECT_GT(miss(small, record, test::with_effects(model, {harmonic})), 2 * kTolerance);
 }
 
-/// A yielding frame of a building that is driven hard.
+/// A yielding frame of a strongly driven building.
 struct Yielding {
   Small small;
   Plant plant = small.plant();

@@ -19,14 +19,15 @@ using Eigen::VectorXd;
 using test::effect_of;
 using test::Small;
 
-constexpr double kRounding = 1e-10;                   // of the greatest entry
+constexpr double kRounding = 1e-10;                   // of the largest entry
 constexpr double kFrequencies[] = {3.0, 14.0, 40.0};  // rad/s
 
 MatrixXcd operation_of(const Plant& plant, const ModelEffect& effect, double w) {
   return LinearOperation(plant, initial_model(plant), effect).at(w);
 }
 
-/// What an element of this stiffness and damping adds: k (-1/w^2) and c / jw along it.
+/// Returns the operation of an element with this stiffness and damping: k (-1/w^2) and c / jw along
+/// it.
 MatrixXcd element_operation(const Plant& plant, Index element, double stiffness, double damping,
                             double w) {
   return (-stiffness / (w * w) + damping / (kJ * w)) *
@@ -99,7 +100,7 @@ TEST(LinearOperation, PanelsOfAFloorTakeTheirNewValues) {
   }
 }
 
-/// A frame on a rotational spring is one in series with it: k / (1 + k h^2 / kr).
+/// A frame on a rotational spring is in series with it: k / (1 + k h^2 / kr).
 TEST(LinearOperation, RockingAndBendingSoftenASingleFrameAsInSeries) {
   constexpr double kFlexibility = 2e-9;  // 1 / kr
   const test::SingleMass single;

@@ -22,7 +22,7 @@ MatrixXd one(double x) {
   return MatrixXd::Constant(1, 1, x);
 }
 
-/// Three masses on a chain of springs, driven at two.
+/// Three masses on a chain of springs, driven at two of them.
 struct Chain {
   MatrixXd mass = MatrixXd(Eigen::Vector3d(2, 1, 3).asDiagonal());
   MatrixXd damping, stiffness, inputs = MatrixXd::Zero(3, 2);
@@ -41,7 +41,8 @@ struct Chain {
     return ModalSystem(mass, damping, stiffness, inputs, step_s);
   }
 
-  /// Displacements, velocities, inputs and their rates after a step, of those before.
+  /// Returns the matrix from displacements, velocities, inputs and their rates before a step to
+  /// those after it.
   MatrixXd step_matrix(double step_s) const {
     MatrixXd a = MatrixXd::Zero(10, 10);
     const MatrixXd per_mass = inverse(mass);
@@ -75,8 +76,8 @@ TEST(ModalSystem, AnswersARampAsTheClosedForm) {
 
 TEST(ModalSystem, IsExactForInputsThatAreLinearWithinAStep) {
   constexpr int kSteps = 40;
-  // Lightly damped, strongly damped with modes that do not swing, and hardly at all; steps from
-  // fine to longer than a period.
+  // Light damping, strong damping with overdamped modes, and almost none; steps from fine to longer
+  // than a period.
   for (const double damping : {0.8, 40.0, 1e-3})
     for (const double step_s : {0.01, 0.2, 1.0}) {
       const Chain chain(damping);
@@ -114,7 +115,7 @@ TEST(ModalSystem, ACorrectedStepIsOnePredictedWhole) {
     const double d = parts.displacement(seen), v = parts.velocity(seen);
     parts.correct(second);
     EXPECT_NEAR(parts.displacement(seen), whole.displacement(seen), kRounding);
-    // What the observer says that an input at the end of the step adds at once.
+    // The observer's gain of an input at the end of the step.
     EXPECT_NEAR(parts.displacement(seen) - d, seen.displacement_gain * second, kRounding);
     EXPECT_NEAR(parts.velocity(seen) - v, seen.velocity_gain * second, kRounding);
   }

@@ -61,7 +61,7 @@ TEST(Model, AnElementIsFoundByItsPlace) {
 }
 
 TEST(Model, FramesMeetAtACrossing) {
-  const Structure grid = test::table2();  // four lines each way
+  const Structure grid = test::table2();  // four lines in each direction
   ASSERT_EQ(frames_at(grid, 0), (std::vector<int>{0, 4}));
   EXPECT_EQ(frames_at(grid, 3), (std::vector<int>{0, 7}));
   EXPECT_EQ(frames_at(grid, 4), (std::vector<int>{1, 4}));
@@ -79,11 +79,11 @@ TEST(Model, ANodesDirectionIsItsCoordinate) {
   for (int f = 0; f < 4; ++f) EXPECT_EQ(node_direction(plant, 1, f), VectorXd::Unit(4, f));
 }
 
-/// Of a floor that moves as one body: the motion of a node for each of its three coordinates.
+/// On a floor that moves as one body: the motion of a node for each of the three coordinates.
 TEST(Model, ANodesDirectionOnARigidFloorIsItsShare) {
   constexpr double kRounding = 1e-12;
   Small small = test::rigid_small();
-  small.axes.erase(small.axes.begin() + 3);  // three sensors do not show whether it flexes
+  small.axes.erase(small.axes.begin() + 3);  // three sensors cannot show if it flexes
   const auto plant = make_plant(small.structure, small.axes, small.design, test::kRate_hz);
   ASSERT_TRUE(plant);
   ASSERT_EQ(plant->equations(), 3);

@@ -47,7 +47,7 @@ TEST(Plant, ExactMotionBalancesItsForces) {
                                             test::oblique_motion(3), test::kRate_hz, 300);
   const Index elements = plant.element_count(), instants = motion.accel_abs.rows();
   const auto of_axes = [&](const MatrixXd& sensors) {
-    MatrixXd out = MatrixXd::Zero(6, instants);  // relative motion: that of the base is none
+    MatrixXd out = MatrixXd::Zero(6, instants);  // relative motion: zero for the base
     out.topRows(4) = sensors.leftCols(4).transpose();
     return out;
   };
@@ -87,7 +87,7 @@ TEST(Plant, ARigidFloorWithEverySensorMayFlex) {
   EXPECT_GT(plant.design[plant.table.panel_stiffness(1, 0)],
             kStiffEnough * small.design.head(4).maxCoeff());
   EXPECT_GT(plant.design[plant.table.panel_damping(1, 0)], 0);
-  // Its steps are those of the modes that it has when the floor is rigid.
+  // Its steps are those for the modes of the rigid floor.
   EXPECT_NEAR(plant.highest_hz,
               natural_frequencies_hz(small.structure, small.table, small.design).back(), kRounding);
 }
@@ -100,7 +100,7 @@ TEST(Plant, ARigidFloorWithThreeSensorsHasThreeCoordinates) {
     EXPECT_FALSE(plant.stiff_floors);
     EXPECT_EQ(plant.equations(), 3);
     EXPECT_EQ(plant.element_count(), 4);
-    // Three readings are what the three coordinates make of them.
+    // The three coordinates determine three readings.
     MatrixXd seen(3, 3);
     for (Index a = 0; a < 3; ++a) {
       const SensorAxis& axis = plant.axes[static_cast<std::size_t>(a)];

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/model/free_run.h"
-#include "estimator/diagnose/spectra/upsampled.h"
+#include "estimator/diagnose/spectra/fourier.h"
 #include "tests/estimator/diagnose/other_buildings.h"
 
 namespace framewatch::estimator {
@@ -48,7 +48,7 @@ TEST(Upsampled, KeepsSamplesAndConstants) {
   EXPECT_EQ(upsampled(signal, 1), signal);
   const VectorXd fine = upsampled(signal, 4);
   for (Index i = 0; i < kSize; ++i) EXPECT_NEAR(fine[4 * i], signal[i], kRounding);
-  // To the very ends, which are held.
+  // Up to the ends, whose values are held.
   EXPECT_LT((upsampled(VectorXd::Constant(30, 2.5), 3, 0.3).array() - 2.5).matrix().norm(),
             kRounding);
   EXPECT_EQ(upsampled(VectorXd(), 3).size(), 0);

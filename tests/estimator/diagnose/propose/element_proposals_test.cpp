@@ -1,13 +1,14 @@
 #include <algorithm>
+
 #include <cmath>
 #include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/element_proposals.h"
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/diagnose/propose/proposal.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
@@ -17,14 +18,14 @@ namespace element_proposals_test {
 using test::Recorded;
 
 constexpr int kFrame = 2;           // of 8e6 N/m; it deforms by about 16 mm, 0.2 m/s
-constexpr double kSizeOff = 0.4;    // of a start value: the scalar fit sees noisy motion
-constexpr double kMinShare = 0.05;  // of the design, what a proposal leaves of a stiffness
+constexpr double kSizeOff = 0.4;    // of a start value, because the scalar fit uses noisy motion
+constexpr double kMinShare = 0.05;  // of the design, the smallest stiffness that a proposal leaves
 
 bool dissipates(LawForm form) {
   return is_hysteretic(form) || form == LawForm::friction || form == LawForm::power_damping;
 }
 
-/// A law hidden in the frame, and the family that has to fit its force best.
+/// A law hidden in the frame, and the family that should fit its force best.
 struct HiddenLaw {
   EffectKind kind;
   std::vector<double> values;
@@ -34,7 +35,7 @@ struct HiddenLaw {
   friend void PrintTo(const HiddenLaw& law, std::ostream* out) { *out << name_of(law.kind); }
 };
 
-/// Of a proposed law, what the first parameter of the catalogue's law is.
+/// Returns the first parameter of the catalog's law for a proposed law.
 double size_of(const ModelEffect& e) {
   const double amplitude = e.parameters[0].plain();
   if (e.form == LawForm::power) return amplitude / std::pow(e.deformation, e.parameters[1].plain());
@@ -62,7 +63,7 @@ TEST_P(LawInAFrame, IsProposedFirst) {
       std::is_sorted(proposals.begin(), proposals.end(),
                      [](const Proposal& a, const Proposal& b) { return a.misfit < b.misfit; }));
   for (const Proposal& p : proposals) {
-    // The force follows the motion, so it is no force that may be anything.
+    // The force follows the motion, so it is not an arbitrary force.
     EXPECT_NE(p.model.effects.back().form, LawForm::broadband);
     if (dissipates(p.model.effects.back().form)) {
       EXPECT_GE(p.model.effects.back().parameters[0].plain(), 0) << name_of(p.kind);
@@ -128,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(name_of(one.param.kind)) + "_" + std::to_string(one.index);
     });
 
-/// What an element needs in a record that hides nothing; tests put forces of their own into it.
+/// The needed signal of an element in a record that hides nothing. Tests replace its force.
 struct QuietElement {
   Recorded recorded{test::records_with({})};
   Localisation place;
@@ -200,5 +201,70 @@ TEST(ElementProposals, OnlyFramesPinch) {
   }
 }
 
+constexpr double kOnsetOff = 0.02;   // of the record
+constexpr double kLengthOff = 0.35;  // of the duration: the coarse search has three
+
+/// Two records of a frame whose force gains a share of stiffness: in the first from from_s on, over
+/// length_s; in the second all the time.
+struct Changing {
+  Recorded recorded{test::records_with({}, {1, 2})};
+  std::vector<NeededSignal> needed;
+  ModelEffect start;
+
+  Changing(double from_s, double length_s, bool also_in_second) {
+    constexpr double kChange_npm = -1e6;
+    const Localisation place = recorded.freed(test::in_frame(kFrame));
+    needed = needed_signals(recorded.fitter, place);
+    start.form = LawForm::changing;
+    start.place = test::in_frame(kFrame);
+    start.parameters = {linear_parameter(kChange_npm, 1e4)};
+    for (std::size_t r = 0; r < needed.size(); ++r) {
+      const RecordSegment& s = recorded.segments[r];
+      const int ratio = recorded.fitter.ratio(r);
+      const double from = r == 0 ? from_s : also_in_second ? -1 : 1e6;
+      const LawValues law{LawForm::changing, {kChange_npm, from, r == 0 ? length_s : 0.05}, 1, 1};
+      needed[r].force =
+          band_of(law_force(law, needed[r].d_t, needed[r].v_t, 1 / (s.rate_hz * ratio)), s, ratio);
+    }
+  }
+
+  std::vector<LawParameter> times(std::size_t record, bool sudden) const {
+    return timed_change(recorded.fitter, needed, start, sudden).record_parameters[record];
+  }
+  double seconds() const { return recorded.segments.front().seconds(); }
+};
+
+TEST(TimedChange, ADropIsTimed) {
+  for (const double from_s : {2.0, 9.3, 15.0}) {
+    const Changing c(from_s, 0.05, true);
+    const std::vector<LawParameter> times = c.times(0, true);
+    EXPECT_NEAR(times[0].plain(), from_s, kOnsetOff * c.seconds());
+    EXPECT_FALSE(times[1].free);
+  }
+}
+
+TEST(TimedChange, ADriftIsTimedAndItsDurationFree) {
+  constexpr double kFrom_s = 4, kDuration_s = 13;
+  const Changing c(kFrom_s, kDuration_s, true);
+  const std::vector<LawParameter> times = c.times(0, false);
+  EXPECT_NEAR(times[0].plain(), kFrom_s, 2 * kOnsetOff * c.seconds());
+  EXPECT_NEAR(times[1].plain() / kDuration_s, 1, kLengthOff);
+  EXPECT_TRUE(times[1].free);
+}
+
+TEST(TimedChange, ARecordAfterTheChangeIsAllChanged) {
+  // Alone it could be a change of another stiffness; the first record decides.
+  constexpr double kStillAtRest_s = 1;
+  const Changing c(10, 0.05, true);
+  EXPECT_LT(c.times(1, true)[0].plain(), kStillAtRest_s);
+}
+
+TEST(TimedChange, ARecordBeforeTheChangeHasItAtItsEnd) {
+  constexpr double kMotionEnds_s = 15;
+  const Changing c(10, 0.05, false);
+  EXPECT_GT(c.times(1, true)[0].plain(), kMotionEnds_s);
+}
+
 }  // namespace element_proposals_test
+
 }  // namespace framewatch::estimator

@@ -17,7 +17,7 @@ using test::Recorded;
 
 constexpr int kFrame = 2;           // of 8e6 N/m; it deforms by about 16 mm, 0.2 m/s
 constexpr double kMinShare = 0.85;  // of the force beyond noise that its kind explains
-constexpr double kMaxOf = 0.75;     // the same where the law is strong
+constexpr double kMaxOf = 0.75;     // of the force, if the law is strong
 
 KindOfLaw kind_with(EffectKind kind, std::initializer_list<double> values) {
   Effect effect = make_effect(kind, test::in_frame(kFrame));
@@ -45,7 +45,7 @@ TEST(LawKind, IsFoundWithoutAFormula) {
   EXPECT_STREQ(law_kind_word(dissipative.kind), "dissipative");
 }
 
-/// A law that no name of the catalogue has.
+/// A law that the catalog does not have.
 class Unnamed : public ElementLaw {
  public:
   enum class Sort { tires, slackens, grows, waves, gives };
@@ -79,7 +79,7 @@ class Unnamed : public ElementLaw {
  private:
   static constexpr double kStiffness = 4e6, kYield = 4e-3;  // N/m, m
   static constexpr double kDamping = 2e9;                   // N*s/m^3
-  static constexpr double kTires = 0.1;  // m, in which it loses all but 1/e of its strength
+  static constexpr double kTires = 0.1;                     // m, in which its strength falls to 1/e
   double limit() const { return kYield * std::exp(-slid_ / kTires); }
 
   Sort sort_;
@@ -126,7 +126,7 @@ TEST(LawKind, EveryLawOfAnElementIsOfOneAndThoseThatStickOfTwo) {
 
 TEST(LawKind, DrawsTheForceOverDeformationAndRate) {
   const RestoringSurface hardening = kind_with(EffectKind::cubic_stiffness, {2.25e10}).surface;
-  // Cells that the motion hardly reached have no force: the outermost that have one.
+  // Cells that the motion hardly reached have no force. These are the outermost ones that have one.
   const Eigen::Index middle = hardening.v_mps.size() / 2;
   Eigen::Index first = 0, last = hardening.d_m.size() - 1;
   while (first < last && std::isnan(hardening.force_n(first, middle))) ++first;

@@ -11,12 +11,12 @@
 namespace framewatch::estimator {
 namespace name_of_fit_test {
 
-// What the names depend on.
-constexpr double kExponent = 2.45;     // above: cubic
-constexpr double kRigidShare = 0.02;   // of the peak deformation: a yield below is friction
-constexpr double kCorner = 20;         // exponent of hysteresis, above: bilinear
-constexpr double kSuddenShare = 0.06;  // of the record: a change shorter than it is a drop
-constexpr double kNear = 1e-3;         // either side, relative
+// Thresholds of the names.
+constexpr double kExponent = 2.45;     // cubic above
+constexpr double kRigidShare = 0.02;   // of the peak deformation: friction below
+constexpr double kCorner = 20;         // exponent of hysteresis: bilinear above
+constexpr double kSuddenShare = 0.06;  // of the record: a drop below
+constexpr double kNear = 1e-3;         // on either side, relative
 constexpr double kPeak_m = 0.012, kSeconds = 30, kRate_hz = 10;
 
 RecordSegment half_minute() {
@@ -53,7 +53,7 @@ TEST(NameOfFit, YieldAndSharpnessTellHysteresisApart) {
   EXPECT_EQ(hysteresis(0.3, kCorner * (1 - kNear)), "bouc_wen");
   EXPECT_EQ(hysteresis(0.3, kCorner * (1 + kNear)), "bilinear_hysteresis");
   EXPECT_EQ(hysteresis(kRigidShare * (1 + kNear), 40), "bilinear_hysteresis");
-  // What yields at once is friction, however sharp its corner.
+  // A law that yields at once is friction, however sharp it is.
   EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 40), "coulomb_friction");
   EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 2), "coulomb_friction");
 }
@@ -66,7 +66,7 @@ TEST(NameOfFit, ASlipZoneAsWideAsTheLoopIsNone) {
   EXPECT_EQ(name(pinched(0.3, 0.3)), "pinching");
   EXPECT_EQ(name(pinched(0.3, 2)), "bouc_wen");
   EXPECT_EQ(name(pinched(0.3, 2, 4)), "pinching") << "it opens with work";
-  // Of half the stiffness it yields at twice the deformation.
+  // With half the stiffness it yields at twice the deformation.
   EXPECT_EQ(name(pinched(0.4 * kRigidShare, 2)), "coulomb_friction");
   EXPECT_EQ(name(pinched(0.6 * kRigidShare, 2)), "bouc_wen");
   const ModelEffect plain = without_slip(pinched(0.3, 2));
@@ -95,7 +95,7 @@ TEST(NameOfFit, TheShortestDurationTellsDropFromDrift) {
   EXPECT_EQ(change({sudden * (1 - kNear)}), "stiffness_drop");
   EXPECT_EQ(change({sudden * (1 + kNear)}), "stiffness_drift");
   EXPECT_EQ(change({10, 20}), "stiffness_drift");
-  // A record that is over before the change ends does not know how long it takes.
+  // A record that ends during the change does not show its duration.
   EXPECT_EQ(change({10, 0.05}), "stiffness_drop");
 }
 

@@ -6,7 +6,6 @@
 #include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/propose/node_proposals.h"
-#include "estimator/diagnose/propose/proposal.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "estimator/simulate/random.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
@@ -20,7 +19,7 @@ constexpr int kFrame = 2;
 constexpr double kMassOff = 0.3, kFrequencyOff = 0.02;  // of an oscillator's start values
 constexpr double kForceOff = 0.1, kForceHzOff = 2e-3, kOnsetOff_s = 0.5;
 
-/// What is proposed where the force of a frame, or at its floor, may be anything.
+/// Proposals for an arbitrary force in a frame, or at its floor.
 struct AtNode {
   Recorded recorded;
   std::vector<Proposal> proposals;
@@ -96,7 +95,7 @@ TEST(NodeProposals, AForceThatGoesOnAtRestMayBeAnything) {
   for (double& f : stationary) f = 2e4 * random.normal();
   EXPECT_TRUE(offered(stationary));
   EXPECT_FALSE(offered(1e-4 * stationary)) << "not above the noise";
-  // Where the ground shakes and nowhere else: a law of the building may do this.
+  // Only where the ground shakes: a law of the building can do this.
   Eigen::VectorXd with_ground = stationary;
   for (Eigen::Index i = 0; i < with_ground.size(); ++i)
     with_ground[i] *=

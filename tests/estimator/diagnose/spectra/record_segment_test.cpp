@@ -23,7 +23,7 @@ constexpr double kStep_hz = kRate_hz / kIntervals;
 constexpr Band kBand{1, 6};
 constexpr double kRounding = 1e-9;
 
-/// cos of a whole number of periods in the segment, and at its end as at its beginning.
+/// Returns a cosine with a whole number of periods in the segment, equal at both ends.
 MatrixXd tone(Index bin, double amplitude, double phase, double mean) {
   MatrixXd out(kIntervals + 1, 1);
   for (Index i = 0; i < out.rows(); ++i)
@@ -49,7 +49,7 @@ TEST(RecordSegmentSpectrum, AToneStandsInItsBin) {
   const RecordSegment s = segment_of(tone(kBin, kAmplitude, kPhase, kMean));
   VectorXcd expected = VectorXcd::Zero(s.bins());
   expected[kBin - s.first_bin] = std::polar(kAmplitude * kIntervals / 2, kPhase);
-  // The mean of the samples holds the last, repeated one: it stands below the band.
+  // The mean includes the last, repeated sample: it lies below the band.
   EXPECT_LT((s.spectrum.row(0).transpose() - expected).norm(), kRounding * kIntervals);
   EXPECT_NEAR(s.accel.mean(), 0, kRounding);
 }
@@ -132,7 +132,7 @@ TEST(RecordSegmentNoise, IsGivenOrTakenFromTheRecord) {
 }
 
 TEST(RecordSegmentNoise, WhiteNoiseHasItsVarianceAtEveryRate) {
-  // The correction for taking the quietest fifth is rough where a second has few frequencies.
+  // The correction for the quietest fifth is rough if a second has few frequencies.
   constexpr double kSd = 0.03, kTolerance = 0.15, kOfFewFrequencies = 0.25;
   for (const double rate_hz : {50.0, 100.0, 128.0, 200.0}) {
     const auto samples = static_cast<Index>(60 * rate_hz);

@@ -28,7 +28,7 @@ TEST(RowProduct, IsThatOfMatrices) {
   };
   for (const Case& c : {Case{1, 1, 4}, Case{3, 2, 8}, Case{8, 8, 12}, Case{5, 9, 40}}) {
     const RowMatrix a = random_rows(c.rows, c.inner, 1), b = random_rows(c.inner, c.columns, 2);
-    RowMatrix out = random_rows(2, 3, 3);  // what was there is gone
+    RowMatrix out = random_rows(2, 3, 3);  // previous contents are overwritten
     multiply(a, b, out);
     ASSERT_EQ(out.rows(), c.rows);
     ASSERT_EQ(out.cols(), c.columns);
@@ -51,7 +51,7 @@ TEST(RowGram, IsTheSumOfOuterProducts) {
     RowGram gram(columns);
     EXPECT_EQ(gram.sum(), MatrixXd::Zero(columns, columns));
     MatrixXd expected = MatrixXd::Zero(columns, columns);
-    // Numbers of rows that grow and shrink: nothing of the rows before is left.
+    // Numbers of rows that grow and shrink: no earlier rows remain.
     for (const Index count : {1, 6, 2, 2, 9}) {
       const RowMatrix rows = random_rows(count, columns, static_cast<std::uint64_t>(count));
       gram.rows(count) = rows;

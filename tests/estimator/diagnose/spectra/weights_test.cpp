@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr Index kEquations = 3, kBins = 40;
 
-/// Any lower triangles, and an oscillator at the second equation.
+/// Arbitrary lower triangles, and an oscillator at the second equation.
 struct Some {
   std::vector<MatrixXcd> whitener;
   VectorXd w = VectorXd::LinSpaced(kBins, 2.0, 9.0);
@@ -50,7 +50,7 @@ TEST(Weights, ForcesAreThoseOfTheirWhitenedRows) {
   const Some some;
   MatrixXd read = MatrixXd::Zero(kEquations, 2);
   read << 0.8, 0, 0.6, 0, 0, 1;
-  // Rows of zeros stand for what is eliminated.
+  // Rows of zeros stand for eliminated equations.
   std::vector<MatrixXcd> eliminated;
   for (const MatrixXcd& w : some.whitener) {
     eliminated.push_back(MatrixXcd::Zero(kEquations, kEquations));
@@ -69,7 +69,7 @@ TEST(Weights, ForcesAreThoseOfTheirWhitenedRows) {
   }
 }
 
-/// Large buildings whose motions are not all read have whiteners that are no triangles.
+/// Large buildings with unread motions have whiteners that are not triangular.
 TEST(Weights, OfMotionsThatAreNotAllReadAreWhole) {
   constexpr Index kLarge = 30, kRead = 4;
   Random random{5};
@@ -97,7 +97,7 @@ TEST(Weights, OfMotionsThatAreNotAllReadAreWhole) {
   }
 }
 
-/// The end terms' columns as docs/equations.md (32) has them, each of length one.
+/// Returns the end terms' columns of docs/equations.md (32), each of length one.
 MatrixXd columns_of_ends(const Some& some) {
   MatrixXd out(2 * kEquations * kBins, 4 * kEquations + 2);
   const double middle = std::sqrt(some.w[0] * some.w[kBins - 1]);
@@ -162,8 +162,8 @@ TEST(Weights, OneBinIsExplainedByItsEnds) {
   EXPECT_LT(weights.without_ends(VectorXd::Ones(2 * kEquations)).norm(), kLeft);
 }
 
-/// X of a whitener W: forces of unit size give its real and imaginary parts, those of size -j the
-/// imaginary ones and minus the real ones.
+/// X of a whitener W: unit forces give its real and imaginary parts, forces of -j the imaginary
+/// parts and minus the real parts.
 TEST(Weights, UnitForcesAreTheWhitenerInRealParts) {
   const Some some;
   const Weights weights(whiteners_of(some.whitener), some.w, {});

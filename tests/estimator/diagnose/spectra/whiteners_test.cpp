@@ -20,7 +20,7 @@ constexpr double kRounding = 1e-10;
 constexpr Index kBinCounts[] = {1, 7, 8, 9, 17};  // around the kernels' eight
 constexpr Index kEquations = 3, kAxes = 5;
 
-/// Any operation on any noise.
+/// A random operation with random noise.
 struct Equations {
   std::vector<MatrixXcd> operation;
   MatrixXd noise;
@@ -51,7 +51,7 @@ std::vector<MatrixXcd> whole(const std::vector<Whitener>& all) {
   return out;
 }
 
-/// L^-1 covariance L^-H away from the identity.
+/// Returns the distance of L^-1 covariance L^-H from the identity.
 double miss(const MatrixXcd& whitener, const MatrixXcd& covariance) {
   return (whitener * covariance * whitener.adjoint() -
           MatrixXcd::Identity(covariance.rows(), covariance.cols()))
@@ -99,7 +99,7 @@ TEST(Whiteners, PushedForcesAddTheirCovariance) {
     const double mean = sensors.diagonal().real().mean();
     EXPECT_LT(miss(all[static_cast<std::size_t>(b)], sensors + mean * pushed.cast<Complex>()),
               kRounding * kSize);
-    // What lies along the force hardly counts any more.
+    // The part along the force has almost no weight.
     EXPECT_LT((all[static_cast<std::size_t>(b)] * at).squaredNorm() * mean, 1.01 / kSize);
   }
 }
@@ -141,5 +141,56 @@ TEST(Whiteners, ThereAreNoneWhereAnEquationHasNoNoise) {
   }
 }
 
+using Eigen::VectorXcd;
+
+constexpr double kExact = 1e-12;
+
+/// Below and above the size from which only a triangle is stored, including sizes that are not
+/// multiples of the block.
+constexpr Index kSizes[] = {1, 3, 24, 29, 40};
+
+MatrixXcd random_matrix(Index equations, bool triangular) {
+  Random random(static_cast<std::uint64_t>(equations));
+  MatrixXcd out = MatrixXcd::Zero(equations, equations);
+  for (Index i = 0; i < equations; ++i)
+    for (Index j = 0; j < (triangular ? i + 1 : equations); ++j)
+      out(i, j) = Complex(random.normal(), random.normal());
+  return out;
+}
+
+TEST(Whitener, IsTheMatrixThatItWasMadeOf) {
+  for (const bool triangular : {true, false})
+    for (const Index n : kSizes) {
+      const MatrixXcd whole = random_matrix(n, triangular);
+      const Whitener whitener(whole);
+      EXPECT_EQ(whitener.equations(), n);
+      EXPECT_EQ(whitener.whole(), whole);
+      EXPECT_NEAR(whitener.squared_norm(), whole.squaredNorm(), kExact * whole.squaredNorm());
+      const VectorXcd x = random_matrix(n, false).col(0);
+      EXPECT_LT((whitener.times(x) - whole * x).norm(), kExact * whole.norm() * x.norm());
+      EXPECT_LT((whitener.adjoint_times(x) - whole.adjoint() * x).norm(),
+                kExact * whole.norm() * x.norm());
+    }
+}
+
+TEST(Whitener, MetricIsItsSquare) {
+  for (const bool triangular : {true, false})
+    for (const Index n : kSizes) {
+      const MatrixXcd whole = random_matrix(n, triangular), expected = whole.adjoint() * whole;
+      EXPECT_LT((Whitener(whole).metric() - expected).norm(), kExact * expected.norm())
+          << n << " equations";
+    }
+}
+
+TEST(Whitener, IsFiniteUnlessANumberIsNot) {
+  for (const Index n : kSizes) {
+    MatrixXcd whole = random_matrix(n, true);
+    EXPECT_TRUE(Whitener(whole).is_finite());
+    whole(n - 1, 0) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(Whitener(whole).is_finite());
+  }
+}
+
 }  // namespace whiteners_test
+
 }  // namespace framewatch::estimator

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/fit/unknowns.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/trials/known_effects.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
@@ -15,7 +17,7 @@ namespace framewatch::estimator {
 namespace catalogue_form_test {
 
 constexpr double kRounding = 1e-9, kRate_hz = 100, kSeconds = 8;
-constexpr double kSharp = 40;  // exponent that stands for a corner
+constexpr double kSharp = 40;  // exponent of a bilinear law
 
 Eigen::MatrixXd any_motion(Eigen::Index axes) {
   Random random(31);
@@ -24,7 +26,7 @@ Eigen::MatrixXd any_motion(Eigen::Index axes) {
   return out;
 }
 
-/// Plant and one segment of any motion of the two-story model.
+/// Plant and one segment of random motion of the two-story model.
 struct Scene {
   test::TableModel model = test::table_model();
   Plant plant = *make_plant(model.structure, model.axes, model.theta, kRate_hz);
@@ -32,7 +34,7 @@ struct Scene {
       make_segment(any_motion(plant.axis_count()), kRate_hz,
                    Eigen::VectorXd::Constant(plant.axis_count(), 0.01), {0.5, 12})};
 
-  /// The effect put into a model and read from it again.
+  /// Adds the effect to a model and reads it back.
   Effect round_trip(const Effect& effect) const {
     Model fitted = initial_model(plant);
     const std::vector<FoundEffect> known = add_known(plant, segments, {effect}, fitted);
@@ -40,7 +42,8 @@ struct Scene {
   }
 };
 
-/// All but the level of clipping, which is the record's, and rigid floors' flexibility.
+/// Returns all kinds except clipping, whose level is the record's, and the flexibility of rigid
+/// floors.
 std::vector<EffectKind> kinds_of_a_model() {
   std::vector<EffectKind> out;
   for (const EffectDescription& d : effect_catalogue())
@@ -95,7 +98,7 @@ TEST(CatalogueForm, SignsSurviveTheRoundTrip) {
 }
 
 TEST(CatalogueForm, APowerBetweenIsTheCataloguesAtTheLargestDeformation) {
-  // 700 N at 4 mm, whatever the exponent.
+  // 700 N at 4 mm, for any exponent.
   const Scene scene;
   constexpr double kForce_n = 700, kPeak_m = 4e-3;
   for (const EffectKind kind : {EffectKind::cubic_stiffness, EffectKind::quadratic_stiffness}) {
@@ -169,11 +172,117 @@ TEST(CatalogueForm, BandAndSizeOfAForceAreReadFromTheRecord) {
   fitted.theta = recorded.small.truth;
   fitted.effects.push_back(any);
   const Effect force = catalogue_effect(recorded.plant, recorded.segments, found, fitted);
-  // A force that goes on at the record's ends leaks toward low frequencies.
+  // A force that continues beyond the record's ends leaks toward low frequencies.
   EXPECT_LE(force.value("low_hz"), kHz);
   EXPECT_NEAR(force.value("high_hz"), kHz, kHzOff);
   EXPECT_NEAR(force.value("rms_n") / (kForce_n / std::sqrt(2)), 1, kSizeOff);
 }
 
+using test::Recorded;
+
+constexpr double kCurvatureOff = 0.1;  // of a cost that is only nearly a parabola
+constexpr double kSpreadOff =
+    0.35;  // three standard deviations of a standard deviation from 40 fits
+constexpr double kScaleOff = 0.1;
+constexpr Tolerances kExact{0, 0, 0};
+
+/// A fitted model with these effects, and their errors.
+struct FittedEffects {
+  FitResult fit;
+  std::vector<FoundEffect> effects;
+
+  FittedEffects(const Fitter& fitter, const std::vector<Effect>& known) {
+    Model start = initial_model(fitter.plant());
+    effects = add_known(fitter.plant(), fitter.segments(), known, start);
+    fit = fitter.fit(start, {}, thorough(start, 12));
+    set_errors(fitter, fit.model, fit.motion, effects);
+  }
+};
+
+TEST(ParameterErrors, CostRisesByHalfTheSquareOfTheDeviations) {
+  constexpr double kDeviations = 2;
+  const Effect mass = test::effect_of(EffectKind::extra_mass, test::at_crossing(1), {3000});
+  const Recorded recorded(test::records_with({mass}));
+  const FittedEffects fitted(recorded.fitter, {mass});
+  ASSERT_EQ(fitted.effects[0].std_error.size(), 1U);
+  for (const double side : {-1.0, 1.0}) {
+    Model held = fitted.fit.model;
+    LawParameter& parameter = held.effects[0].parameters[0];
+    parameter.value += side * kDeviations * fitted.effects[0].std_error[0];
+    parameter.free = false;
+    const FitResult others = recorded.fitter.fit(held, {}, thorough(held, 12));
+    EXPECT_NEAR((others.cost - fitted.fit.cost) / (0.5 * kDeviations * kDeviations), 1,
+                kCurvatureOff);
+  }
+}
+
+TEST(ParameterErrors, FitsOfRecordsWithOtherNoiseSpreadAsMuch) {
+  constexpr int kFits = 40;
+  constexpr double kNoise_mps2 = 0.03;
+  const Effect gain = test::effect_of(EffectKind::gain_error, test::at_channel(1), {0.0});
+  const Effect mass = test::effect_of(EffectKind::extra_mass, test::at_crossing(1), {3000});
+  const test::Small small;
+  const Plant plant = small.plant();
+  const Eigen::MatrixXd exact = small.record({mass}, 1);
+  const Eigen::VectorXd w = small.segments({exact}).front().w;
+  const Band band{w[0] / (2 * M_PI), w[w.size() - 1] / (2 * M_PI)};
+  Random random(77);
+  Eigen::ArrayXXd found(kFits, 2), told(kFits, 2);
+  for (int i = 0; i < kFits; ++i) {
+    Eigen::MatrixXd noisy = exact;
+    for (double& a : noisy.reshaped()) a += kNoise_mps2 * random.normal();
+    const std::vector<RecordSegment> segments{make_segment(
+        noisy, test::kRate_hz, Eigen::VectorXd::Constant(noisy.cols(), kNoise_mps2), band)};
+    const FittedEffects fitted(Fitter(plant, segments, kExact), {gain, mass});
+    found.row(i) << fitted.fit.model.gain[1], fitted.fit.model.effects[0].parameters[0].plain();
+    told.row(i) << fitted.effects[0].std_error[0], fitted.effects[1].std_error[0];
+  }
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const Eigen::ArrayXd off = found.col(k) - found.col(k).mean();
+    EXPECT_NEAR(std::sqrt(off.square().sum() / (kFits - 1)) / told.col(k).mean(), 1, kSpreadOff)
+        << k;
+  }
+}
+
+TEST(ParameterErrors, MoreMisfitThanNoiseMakesThemAsMuchLarger) {
+  constexpr double kLess = 9;
+  const Effect mass = test::effect_of(EffectKind::extra_mass, test::at_crossing(1), {3000});
+  const Recorded recorded(test::records_with({mass}), kExact);
+  std::vector<RecordSegment> believed_quiet = recorded.segments;
+  for (RecordSegment& s : believed_quiet) s.variance /= kLess;
+  const double told = FittedEffects(recorded.fitter, {mass}).effects[0].std_error[0];
+  const double of_quiet =
+      FittedEffects(Fitter(recorded.plant, believed_quiet, kExact), {mass}).effects[0].std_error[0];
+  EXPECT_NEAR(of_quiet / told, 1, kScaleOff);
+}
+
+TEST(ParameterErrors, AreOfTheCataloguesUnits) {
+  // The angle is fitted in rad and given in degrees.
+  EffectPlace pair = test::at_channel(0);
+  pair.kind = PlaceKind::channel_pair;
+  pair.with_channel = 2;
+  const Effect angle = test::effect_of(EffectKind::misalignment, pair, {4});
+  std::vector<Eigen::MatrixXd> records = test::records_with({});
+  const double turn = 4 * M_PI / 180;
+  records[0].col(0) =
+      (std::cos(turn) * records[0].col(0) + std::sin(turn) * records[0].col(2)).eval();
+  const Recorded recorded(records);
+  const FittedEffects fitted(recorded.fitter, {angle});
+  const double error_deg = fitted.effects[0].std_error[0];
+  Model held = fitted.fit.model;
+  held.effects[0].parameters[0].value += 2 * error_deg * M_PI / 180;
+  held.effects[0].parameters[0].free = false;
+  const FitResult others = recorded.fitter.fit(held, {}, thorough(held, 12));
+  EXPECT_NEAR((others.cost - fitted.fit.cost) / 2, 1, kCurvatureOff);
+}
+
+TEST(ParameterErrors, ARampIsLeftAlone) {
+  const Recorded recorded(test::records_with({}));
+  const FittedEffects fitted(
+      recorded.fitter, {test::effect_of(EffectKind::bias_drift, test::at_channel(1), {0.02, 1})});
+  EXPECT_TRUE(fitted.effects[0].std_error.empty());
+}
+
 }  // namespace catalogue_form_test
+
 }  // namespace framewatch::estimator

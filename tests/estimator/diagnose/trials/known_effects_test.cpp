@@ -16,7 +16,7 @@ using test::Recorded;
 
 constexpr double kRounding = 1e-12;
 
-/// Effects put into the linear model of records that hide nothing.
+/// Effects added to the linear model of records that hide nothing.
 struct Known {
   Recorded recorded;
   Model model = initial_model(recorded.plant);
@@ -72,7 +72,7 @@ TEST(KnownEffects, ScalesAreTheLargestMotionOfAnyRecord) {
   const ModelEffect both = law_of(recorded.segments);
   EXPECT_DOUBLE_EQ(both.deformation, std::max(first.deformation, second.deformation));
   EXPECT_DOUBLE_EQ(both.rate, std::max(first.rate, second.rate));
-  // The law's force is the catalogue's, whatever its scale.
+  // The law's force is the catalog's, for any scale.
   const double d = 0.7 * both.deformation;
   EXPECT_NEAR(LawMotion(both.law(0)).force(d, 0, 0), 1e9 * std::pow(d, 3), 1e-6);
   EXPECT_NEAR(LawMotion(first.law(0)).force(d, 0, 0), 1e9 * std::pow(d, 3), 1e-6);
@@ -96,13 +96,13 @@ TEST(KnownEffects, EveryRecordHasItsOwnTimes) {
                    {1, 2});
   const Model& model = with.model;
   for (const ModelEffect& e : model.effects) ASSERT_EQ(e.record_parameters.size(), 2U);
-  // A drop that never comes is one at the record's end; how sudden it is is not fitted.
+  // A drop after the record counts at its end; its duration is not fitted.
   EXPECT_NEAR(model.effects[0].record_parameters[1][0].plain(), with.recorded.segments[1].seconds(),
               kRounding);
   EXPECT_FALSE(model.effects[0].record_parameters[0][1].free);
   EXPECT_TRUE(model.effects[1].record_parameters[0][1].free);
   EXPECT_NEAR(model.effects[1].record_parameters[0][1].plain(), 8, kRounding);
-  // At a quarter of a turn a force is all cosine.
+  // A quarter of a period later the force is a pure cosine.
   EXPECT_NEAR(model.effects[2].record_parameters[1][0].plain(), 100, 1e-9);
   EXPECT_NEAR(model.effects[2].record_parameters[1][1].plain(), 0, 1e-9);
   EXPECT_EQ(model.effects[2].onset_s, (std::vector<double>{5, 5}));

@@ -20,7 +20,7 @@ Effect yielding() {
   return out;
 }
 
-/// A spring was found where the structure yields.
+/// Returns a spring found where the structure yields.
 FoundEffect find_spring(HandMade& made) {
   ModelEffect spring;
   spring.form = LawForm::power;

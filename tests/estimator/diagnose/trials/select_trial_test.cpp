@@ -1,11 +1,13 @@
 #include "estimator/diagnose/trials/select_trial.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
+#include "estimator/diagnose/trials/trials.h"
 #include "tests/estimator/diagnose/hand_made_trials.h"
 
 namespace framewatch::estimator {
@@ -13,13 +15,13 @@ namespace select_trial_test {
 
 using test::HandMade;
 
-// Shares of the excess that a trial has to take away.
+// Shares of the excess that a trial must explain.
 constexpr double kMax = 0.97, kMaxWhereChanceIsLeft = 0.9, kNear = 0.005;
 constexpr double kExcess = 4000, kNeeded = 100;
 constexpr double kWorse = 1.02;  // misfit of a record, relative
 
-/// A model with an excess of kExcess. Trials whose models cannot be fitted on (they have no theta)
-/// stay as they are made.
+/// A model with an excess of kExcess. Trials without theta cannot be refitted and stay as they are
+/// made.
 struct Excess {
   HandMade made;
   double bound;
@@ -91,7 +93,7 @@ TEST(AdoptTrials, ALawTakesMostOfTheExcessAway) {
   const Share all[] = {
       {kMax + kNear, kNeeded, true},
       {kMax - kNear, kNeeded, false},
-      // The rest is within chance: less will do.
+      // The rest is within chance, so a smaller share suffices.
       {kMax - kNear, left, true},
       {kMaxWhereChanceIsLeft + kNear, left, true},
       {kMaxWhereChanceIsLeft - kNear, 2 * left, false},
@@ -171,7 +173,7 @@ TEST(AdoptTrials, AForceThatMayBeAnythingYieldsToALaw) {
 }
 
 TEST(AdoptTrials, ABluntFitIsSharpenedUnlessItIsHopeless) {
-  // A mass that is hidden, in a trial that has half of it; and in one far behind.
+  // A hidden mass, in a trial with half of it, and in a trial far behind.
   constexpr double kMass_kg = 6000, kOff = 0.1;
   HandMade made(test::records_with(
       {test::effect_of(EffectKind::extra_mass, test::at_crossing(1), {kMass_kg})}));
@@ -185,7 +187,7 @@ TEST(AdoptTrials, ABluntFitIsSharpenedUnlessItIsHopeless) {
   stay.max_steps = 0;
   const FitResult begun = made.recorded.fitter.fit(half.model, {}, stay);
   const double expected = made.recorded.fitter.expected(made.now.model);
-  made.now.cost = 10 * begun.cost;  // the trial has most of it
+  made.now.cost = 10 * begun.cost;  // the trial explains most of it
   half.cost = begun.cost;
   half.misfit = begun.misfit;
   Trial hopeless = half;
@@ -197,5 +199,52 @@ TEST(AdoptTrials, ABluntFitIsSharpenedUnlessItIsHopeless) {
   EXPECT_NEAR(trials[0].model.effects.back().parameters[0].plain() / kMass_kg, 1, kOff);
 }
 
+constexpr double kSure = 0.9;
+
+/// A cubic spring, and the laws tried at its place.
+struct Tried {
+  test::HandMade made{test::records_with(
+      {test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {1e10})}, {1, 2})};
+  std::vector<Trial> trials = try_places(made.context(), {made.recorded.freed(test::in_frame(1))});
+
+  /// Returns the effect found under the first name that is cubic or not, with the others as
+  /// alternatives.
+  FoundEffect found(bool cubic) {
+    const auto chosen = std::find_if(trials.begin(), trials.end(), [&](const Trial& t) {
+      return t.outcome == TrialOutcome::fitted && !t.model.effects.empty() &&
+             t.model.effects.back().element_law() &&
+             (t.kind == EffectKind::cubic_stiffness) == cubic;
+    });
+    FoundEffect out;
+    out.chosen = *chosen;
+    out.alternatives = trials;
+    out.confidence = 0.99;
+    out.index = 0;
+    made.now = made.recorded.fitter.fit(chosen->model, {}, thorough(chosen->model, 0));
+    return out;
+  }
+};
+
+TEST(LawsInItsStead, TheBetterOneStays) {
+  Tried tried;
+  FoundEffect effect = tried.found(false);
+  FitResult now = tried.made.now;
+  const double before = now.cost;
+  EXPECT_TRUE(choose_replacement(tried.made.context(), effect, now));
+  EXPECT_EQ(effect.chosen.kind, EffectKind::cubic_stiffness);
+  EXPECT_EQ(effect.index, 0);
+  EXPECT_LT(now.cost, before);
+}
+
+TEST(LawsInItsStead, TheRightOneStaysAndIsSure) {
+  Tried tried;
+  FoundEffect effect = tried.found(true);
+  FitResult now = tried.made.now;
+  EXPECT_FALSE(choose_replacement(tried.made.context(), effect, now));
+  EXPECT_EQ(effect.chosen.kind, EffectKind::cubic_stiffness);
+  EXPECT_GT(effect.confidence, kSure);
+}
+
 }  // namespace select_trial_test
+
 }  // namespace framewatch::estimator

@@ -14,7 +14,7 @@ using test::HandMade;
 
 constexpr double kGain = 0.2, kGainOff = 0.01, kCubic_npm3 = 8e10;
 
-/// Two records of a cubic spring at frame 2 and a channel that reads too much.
+/// Returns two records of a cubic spring at frame 2 and a channel that reads too much.
 std::vector<Eigen::MatrixXd> records_of_two_causes() {
   std::vector<Eigen::MatrixXd> out = test::records_with(
       {test::effect_of(EffectKind::cubic_stiffness, test::in_frame(2), {kCubic_npm3})}, {1, 2});
@@ -22,7 +22,7 @@ std::vector<Eigen::MatrixXd> records_of_two_causes() {
   return out;
 }
 
-/// Two records of a channel that reads too much, and of nothing else.
+/// Returns two records of only a channel that reads too much.
 std::vector<Eigen::MatrixXd> records_of_one_cause() {
   std::vector<Eigen::MatrixXd> out = test::records_with({}, {1, 2});
   for (Eigen::MatrixXd& record : out) record.col(0) *= 1 + kGain;
@@ -84,8 +84,8 @@ TEST(SeveralCauses, ACauseThatMakesAHeldOutRecordWorseIsNotChosen) {
   EXPECT_TRUE(several_causes(made.context(), tried, 1).causes.empty());
 }
 
-/// Beside other causes a law may be best that was not at its place: hysteresis of another name than
-/// the one that had a free run there.
+/// With other causes, the best law may be one that was second at its place: hysteresis of another
+/// name than the one that got a free run there.
 TEST(SeveralCauses, HysteresisThatHadNoFreeRunMayBeACause) {
   const HandMade made(test::records_with(
       {test::effect_of(EffectKind::bouc_wen, test::in_frame(2), {4e6, 0.004, 1, 0.5})}, {1, 2}));

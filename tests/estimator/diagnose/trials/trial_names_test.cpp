@@ -14,7 +14,7 @@ namespace trial_names_test {
 using test::HandMade;
 
 constexpr double kPeak_m = 0.01;
-// What a name needs.
+// Limits of names.
 constexpr double kNarrowestSlip = 0.08;
 constexpr double kNear = 0.01;
 
@@ -28,7 +28,7 @@ ModelEffect effect_with(LawForm form, const EffectPlace& place,
   return out;
 }
 
-/// Whether an effect that a trial adds may have its name.
+/// Returns true if an effect that a trial adds may be named.
 bool may_have_name(const ModelEffect& effect, EffectKind kind) {
   static const HandMade made;
   Trial t = made.trial(kind, 1);
@@ -42,7 +42,7 @@ TEST(TrialNames, SpringsPullAndDampersDissipate) {
       EXPECT_EQ(may_have_name(effect_with(form, test::at_node(0), {linear_parameter(size, 1)}),
                               EffectKind::added_spring),
                 size > 0);
-  // A mass may be missing, a law may soften.
+  // A mass may be negative, a law may soften.
   EXPECT_TRUE(
       may_have_name(effect_with(LawForm::mass, test::at_crossing(0), {linear_parameter(-10, 1)}),
                     EffectKind::extra_mass));
@@ -120,7 +120,7 @@ TEST(TrialNames, NamesThatAreTakenOutAreNotGiven) {
   EXPECT_FALSE(may_be_named(made.context(), t));
 }
 
-/// A trial with these guesses after a fit that added these effects and cost 123.
+/// Returns a trial with these first guesses after a fit that added these effects at a cost of 123.
 Trial taken(const HandMade& made, EffectKind first, EffectKind second,
             const std::vector<ModelEffect>& added) {
   FitResult run = made.now;

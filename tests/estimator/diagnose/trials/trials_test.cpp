@@ -8,8 +8,8 @@
 #include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/propose/needed_signal.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "estimator/diagnose/trials/round_trials.h"
-#include "estimator/diagnose/trials/sharpened.h"
 #include "tests/estimator/diagnose/hand_made_trials.h"
 
 namespace framewatch::estimator {
@@ -119,11 +119,11 @@ TEST(Trials, TheWeakestRecordIsNotAskedWhereThereIsOneOrTimesOfItsOwn) {
 TEST(Trials, ASharpenedTrialIsNeverWorse) {
   const HandMade made;
   const Trial fitted = made.trial(EffectKind::gain_error, 0);
-  EXPECT_LE(sharpened(made.context(), fitted, fitted.model).cost, fitted.cost);
+  EXPECT_LE(refined(made.context(), fitted, fitted.model).cost, fitted.cost);
   Model far = made.now.model;
   far.theta *= 1.1;
   const Trial poor = made.trial(EffectKind::gain_error, -1e6);
-  EXPECT_LT(sharpened(made.context(), poor, far).cost, made.now.cost + 1);
+  EXPECT_LT(refined(made.context(), poor, far).cost, made.now.cost + 1);
 }
 
 TEST(RoundTrials, BoundIsTheMisfitOfAllEquations) {

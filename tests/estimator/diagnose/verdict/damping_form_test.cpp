@@ -15,7 +15,7 @@ namespace damping_form_test {
 
 constexpr double kRatios[] = {0.02, 0.01, 0.03, 0.015, 0.02, 0.01, 0.025, 0.02};
 
-/// Two stories whose dashpots give a tenth of the damping.
+/// Returns two stories whose dashpots give a tenth of the damping.
 test::Small two_stories() {
   test::Small out = test::tower(2);
   out.truth.tail(out.table.elements()) *= 0.1;
@@ -29,7 +29,7 @@ EffectPlace mode_place(int mode) {
   return out;
 }
 
-/// A ratio of its own for every mode.
+/// Returns a separate ratio for every mode.
 std::vector<Effect> ratios() {
   std::vector<Effect> out;
   for (const double ratio : kRatios) {
@@ -39,7 +39,7 @@ std::vector<Effect> ratios() {
   return out;
 }
 
-/// alpha M as dashpots from all floors to the ground.
+/// Returns alpha M as dashpots from all floors to the ground.
 std::vector<Effect> proportional_to_mass(test::Small& small, double alpha_ps) {
   std::vector<Effect> out;
   const Structure& s = small.structure;
@@ -64,7 +64,7 @@ Model true_model(const test::Small& small) {
   return out;
 }
 
-/// Damping ratio of every mode, by dashpots and by itself.
+/// Returns the damping ratio of every mode, from dashpots and modal damping.
 Eigen::VectorXd ratios_of(const Plant& plant, const Model& model) {
   const ModelModes modes = modes_of(plant, model);
   const Eigen::MatrixXd& act = plant.building.act;

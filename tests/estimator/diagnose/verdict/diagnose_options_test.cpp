@@ -15,7 +15,7 @@ namespace diagnose_options_test {
 constexpr double kGain = 0.08, kGainOff = 0.01;
 constexpr int kChannel = 1;
 
-/// Two records, one axis of which reads too much.
+/// Returns two records with one axis that reads too much.
 std::vector<Eigen::MatrixXd> records_with_gain() {
   std::vector<Eigen::MatrixXd> out = test::records_with({}, {1, 2});
   for (Eigen::MatrixXd& record : out) record.col(kChannel) *= 1 + kGain;
@@ -70,7 +70,7 @@ TEST(DiagnoseOptions, GapsAreOfEverySegmentWhateverIsHeldOut) {
     ASSERT_EQ(d.effects.size(), 1U);
     EXPECT_EQ(d.before.size(), 2U);
     EXPECT_EQ(d.after.size(), 2U);
-    // The mean of no segments is none.
+    // The mean over no segments is 0.
     EXPECT_EQ(d.effects[0].before > 0, holdout_from < 2);
     EXPECT_EQ(d.effects[0].after > 0, holdout_from < 2);
   }

@@ -42,7 +42,7 @@ TEST(Gaps, TheTrueModelIsAtTheFloorAndAWrongOneFarAbove) {
   wrong.theta[recorded.small.table.frame_stiffness(1, 0)] *= 1.2;
   const std::vector<Gap> of_wrong = gaps_of(recorded.fitter, wrong);
   for (const Gap& g : of_wrong) EXPECT_GT(g.overall, 5 * g.overall_floor);
-  // Frame 0 is x-parallel, and so are the axes that show it most.
+  // Frame 0 is x-parallel, and so are the axes where it shows most.
   EXPECT_LT(of_wrong[0].worst_axis, 2);
 }
 
@@ -64,7 +64,7 @@ struct Softened {
 
 TEST(Holdout, TheModelHasNotSeenWhatIsHeldOut) {
   const Softened one(1), both(2);
-  // Fitted to the first alone it is at its floor there and far off in the second.
+  // Fitted to the first record alone, it is at its floor there and far off in the second.
   EXPECT_LT(one.diagnosis.before[0].overall, kAtFloor * one.diagnosis.before[0].overall_floor);
   EXPECT_LT(one.diagnosis.before[0].overall, 0.5 * both.diagnosis.before[0].overall);
   EXPECT_GT(one.diagnosis.before[1].overall, 1.2 * both.diagnosis.before[1].overall);
@@ -79,7 +79,7 @@ TEST(Holdout, WithoutEffectsTheGapStaysWhatItWas) {
 }
 
 TEST(Holdout, WhatTheTrainingRecordsDoNotDetermineIsOfAll) {
-  // A reading that is wrong in both records, or in the second alone: then the first knows nothing
+  // A reading that is wrong in both records, or only in the second: then the first contains no sign
   // of it.
   constexpr double kGain = 0.3;
   for (const bool determined : {true, false}) {

@@ -106,7 +106,7 @@ TEST(Judge, RecordsThatFitApartAreOfDifferentBuildings) {
   judge(recorded.fitter, d);
   EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_NE(d.reason.find("different buildings"), std::string::npos);
-  // A reason that is known stays.
+  // An earlier reason is kept.
   d.reason = "known";
   judge(recorded.fitter, d);
   EXPECT_EQ(d.reason, "known");
@@ -125,7 +125,7 @@ TEST(Judge, WhatALinearEffectLeavesIsAnothers) {
   EXPECT_EQ(judged(d), Verdict::explained);
   d.effects[0].approximate = true;
   EXPECT_EQ(judged(d), Verdict::partly_explained);
-  // A law has a shape of its own, which its name need not have.
+  // The fitted shape of a law need not be that of its name.
   d.model.effects[0].form = LawForm::hysteresis;
   EXPECT_EQ(judged(d), Verdict::explained);
 }
@@ -177,8 +177,7 @@ TEST(Withdraw, NamesWhoseModelIsWorseThanNone) {
   EXPECT_FALSE(withdraw_worse(1, none));
 }
 
-/// The gap of a run that diverges is missing: the mean of the others once made tanh in a whole
-/// building a gap of 0 %.
+/// The gap of a diverging run is missing; the mean of the others must not count as a good gap.
 TEST(Withdraw, WhatMakesTheRunOfAnyRecordDiverge) {
   Diagnosis d;
   d.before.resize(2);
@@ -246,7 +245,7 @@ TEST(Grade, OnlyASureNameWithNothingBesideItIsEstablished) {
   EXPECT_STREQ(grade_word(Grade::leading), "leading");
 }
 
-/// A stiff spring that hardens, and two trials: its law, and one at another frame.
+/// A hardening spring and two trials: its law, and one at another frame.
 TEST(Leading, IsTheLawWhoseFreeRunDisagreesLess) {
   const test::Small small;
   const test::EffectTwins twins = test::cubic_spring(2, 4e11);
@@ -273,7 +272,7 @@ TEST(Leading, IsTheLawWhoseFreeRunDisagreesLess) {
   EXPECT_DOUBLE_EQ(d.leading.front().before, mean_gap(d.before, 1));
   for (const LeadingLaw& law : d.leading)
     EXPECT_NE(law.trial.model.effects[0].form, LawForm::broadband);
-  // What fits leaves nothing to lead, and a name needs no leader.
+  // A model that fits needs no leading law, and neither does a named effect.
   d.leading.clear();
   d.ratio_after = 1;
   set_leading(recorded.fitter, test::held_out_from(1), d);

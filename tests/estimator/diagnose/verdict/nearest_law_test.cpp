@@ -12,7 +12,7 @@ using test::HandMade;
 constexpr double kExcess = 4000;
 constexpr int kFrame = 2, kOther = 1;
 
-/// A model with an excess of kExcess, the kind of force of one place, and laws that take some of
+/// A model with an excess of kExcess, the kind of force at one place, and laws that explain some of
 /// it.
 struct Left {
   HandMade made;
@@ -83,7 +83,7 @@ TEST(NearestLawOfAPlace, ThatHoldsMayBeAnyFunctionOfTheDeformation) {
   EXPECT_FALSE(elastic.first(gap)) << "it does not hold, and is of another sort";
 }
 
-/// Friction that sticks is no function of the motion that is measured.
+/// Friction that sticks is not a function of the measured motion.
 TEST(NearestLawOfAPlace, OrLeavesFarLessThanAnyFunctionOfTheMotion) {
   Left left(LawKind::external);
   left.where.front().kind->share[static_cast<std::size_t>(LawKind::hysteretic)] = 0.2;
@@ -117,8 +117,8 @@ TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
       {LawKind::hysteretic, EffectKind::quadratic_stiffness, true},
       {LawKind::time_varying, EffectKind::stiffness_drift, false},
       {LawKind::hysteretic, EffectKind::stiffness_drop, true},
-      {LawKind::external, EffectKind::one_sided_gap, false},   // it is not known
-      {LawKind::hysteretic, EffectKind::added_damper, false},  // no law of an element
+      {LawKind::external, EffectKind::one_sided_gap, false},   // unknown kind
+      {LawKind::hysteretic, EffectKind::added_damper, false},  // not an element law
   };
   for (const Said& said : all) {
     Left left(said.kind);

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/verdict/ramps.h"
+#include "estimator/diagnose/verdict/verdict.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr int kChannel = 1;
 constexpr double kRamp_mps3 = 0.05, kFrom_s = 6;
 constexpr double kSlopeOff = 0.15, kFromOff_s = 2.5;
 
-/// Two records, each with some seconds of noise after it: a ramp is found in no less.
+/// Returns two records, each followed by some seconds of noise, because a ramp needs that length.
 std::vector<Eigen::MatrixXd> long_records() {
   constexpr Eigen::Index kMore = 16 * static_cast<Eigen::Index>(test::kRate_hz);
   Random random(9);
@@ -29,7 +29,7 @@ std::vector<Eigen::MatrixXd> long_records() {
   return out;
 }
 
-/// The same; in the second a reading rises.
+/// Returns such records with a rising reading in the second.
 std::vector<Eigen::MatrixXd> records_with_ramp() {
   std::vector<Eigen::MatrixXd> out = long_records();
   for (Eigen::Index i = 0; i < out[1].rows(); ++i)
@@ -88,7 +88,7 @@ TEST(Ramps, ARampCountsInTheGapBeforeByItsPower) {
   gap.overall = gap.worst = kBefore;
   gap.worst_axis = 0;
   const RecordSegment& s = recorded.segments[1];
-  // The base's axes, the last two, are no outputs.
+  // The base's axes, the last two, are not outputs.
   const Eigen::Index outputs = axes - 2;
   gap.measured_rms =
       std::sqrt(2 * s.spectrum.topRows(outputs).squaredNorm() / static_cast<double>(outputs)) /
@@ -104,7 +104,7 @@ TEST(Ramps, ARampCountsInTheGapBeforeByItsPower) {
   ramp.ramp_from_s = {0, kFrom_s};
   d.effects[1].before = 0.5;
   add_ramps_to_gaps(recorded.plant, recorded.segments, 1, d);
-  // The mean square of the ramp about its mean, sample by sample, over that of the reading.
+  // The mean square of the ramp around its mean, sample by sample, over that of the reading.
   Eigen::VectorXd rise(s.intervals());
   for (Eigen::Index i = 0; i < rise.size(); ++i)
     rise[i] = kRamp_mps3 * std::max(static_cast<double>(i) / s.rate_hz - kFrom_s, 0.0);
@@ -123,7 +123,7 @@ TEST(Ramps, ARampCountsInTheGapBeforeByItsPower) {
   EXPECT_NEAR(d.before[1].overall / of_all, 1, kOff);
   EXPECT_EQ(d.before[1].worst_axis, kChannel);
   EXPECT_DOUBLE_EQ(d.before[0].overall, kBefore);
-  // What it leaves is the gap that the search begins with; other effects keep theirs.
+  // Its remaining gap is the one before the search; other effects keep theirs.
   EXPECT_DOUBLE_EQ(ramp.before, d.before[1].overall);
   EXPECT_DOUBLE_EQ(ramp.after, kBefore);
   EXPECT_DOUBLE_EQ(d.effects[1].before, 0.5);

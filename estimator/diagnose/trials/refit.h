@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/trials/found_effect.h"
+#include "estimator/diagnose/trials/trial.h"
+#include "estimator/numeric/parallel.h"
+
+namespace framewatch::estimator {
+
+/// Refines a trial, starting from `from`, with the shape of hysteresis free. Returns the trial
+/// unchanged if that is not better.
+Trial refined(const TrialContext& context, const Trial& trial, const Model& from);
+
+/// Returns a model fitted to the record with the smallest relative misfit. A strongly nonlinear law
+/// may converge there where a fit to all records does not.
+Model fitted_to_the_weakest(const TrialContext& context, const Model& model);
+
+/// Frees the shapes of all laws (free_shape).
+void free_shapes(Model& model);
+
+/// Smallest fall of the cost that justifies an effect.
+inline constexpr double kMinGain = 50;
+
+inline constexpr int kEndSteps = 6;
+
+/// Fits until neither kind of derivative improves the fit, with kEndSteps each. An unfinished fit
+/// would appear as one more effect.
+FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
+                         const std::vector<Eigen::MatrixXcd>& motion);
+
+/// Removes the effects that `now` has beyond the model `before` if refitting without them gives the
+/// same cost. After an unfinished fit a redundant effect looks useful. Returns true if they were
+/// removed.
+bool remove_redundant(const Fitter& fitter, const Model& before, FitResult& now);
+
+/// Returns the mean gap of a model with an effect over that of one without, both fitted by
+/// judged_fit().
+double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
+                 const Parallel& parallel);
+
+/// Returns true if adding the effect does not reduce the gap of the free run. Each model is fitted
+/// by judged_fit(). A spurious effect can improve the equations of a slightly wrong law, but not
+/// the free run's motion.
+bool is_redundant(const Fitter& fitter, const Model& with, const Model& without,
+                  const Parallel& parallel);
+
+/// Removes masses, springs and dampers that the last of the effects makes redundant.
+void remove_earlier_redundant(const Fitter& fitter, std::vector<FoundEffect>& effects,
+                              FitResult& now);
+
+/// Refits a model with masses, gains and clocks held at their declared values (except those that
+/// are effects) and with the exponents of the catalog's laws.
+Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segments,
+                     const Model& fitted,
+                     const std::vector<const std::vector<FoundEffect>*>& effects,
+                     const Parallel& within = {});
+
+}  // namespace framewatch::estimator
