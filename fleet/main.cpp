@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/command_line/fleet_command_line.h"
 
 int main(int argc, char** argv) {

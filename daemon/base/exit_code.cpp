@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/exit_code.h"
 
 #include <fcntl.h>

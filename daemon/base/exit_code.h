@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exit codes of commands, and the end of the program. A command returns 0 when all is well.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/mat_file.h"
 
 #include <matio.h>

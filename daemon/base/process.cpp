@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/process.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/record_file_arguments.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/served_file.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/sqlite_file.h"
 
 #include <sqlite3.h>

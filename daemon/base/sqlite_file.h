@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 struct sqlite3;
 struct sqlite3_stmt;
 #pragma once

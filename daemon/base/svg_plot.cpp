@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/svg_plot.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/utc_time.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/command_line/option_entries.h"
 
 #include <algorithm>

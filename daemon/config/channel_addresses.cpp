@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/channel_addresses.h"
 
 #include <algorithm>

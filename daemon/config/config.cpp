@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/config.h"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/header_differences.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/read_config.h"
 
 #include <algorithm>

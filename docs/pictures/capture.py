@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """capture.py live URL LIGHT DARK
    capture.py report FILE OUT END WIDTH
 

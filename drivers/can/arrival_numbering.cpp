@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/arrival_numbering.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/bus_load.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/can_socket.h"
 
 #include <net/if.h>

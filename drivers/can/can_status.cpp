@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/can_status.h"
 
 #include <linux/can/error.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/lower_envelope_clock.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/resampler.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/sync_matcher.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/files/caught.h"
 
 #include <sys/resource.h>

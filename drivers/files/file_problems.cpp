@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/files/file_problems.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/files/input_file.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/files/line_reader.h"
 
 #include <algorithm>

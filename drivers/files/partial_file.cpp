@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/files/partial_file.h"
 
 #include <fcntl.h>

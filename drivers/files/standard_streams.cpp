@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/files/standard_streams.h"
 
 #include <sys/stat.h>

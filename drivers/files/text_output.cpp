@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/files/text_output.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/formats/mat_variables.h"
 
 #include <hdf5.h>

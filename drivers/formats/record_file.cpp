@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/formats/record_file.h"
 
 #include <libmseed.h>

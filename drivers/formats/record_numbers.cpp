@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers without a header: columns of time and channels, or one channel that goes on line after
 // line.
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/formats/table.h"
 
 #include <algorithm>

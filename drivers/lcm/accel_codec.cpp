@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/accel_codec.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/count_block.h"
 
 #include <cmath>

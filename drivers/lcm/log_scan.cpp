@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/log_scan.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/records/record_options.h"
 
 #include <array>

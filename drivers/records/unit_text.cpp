@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/records/unit_text.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/stations/fortran_numbers.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Strong motion as COSMOS networks publish it (CESMD, USGS, CGS), format v1.20: raw counts (V0),
 // uncorrected (V1) and corrected (V2) acceleration, one channel a file (V1c) or several.
 // COSMOS Strong-Motion Programs Board (2001), "COSMOS strong motion data format", tables of 2015.

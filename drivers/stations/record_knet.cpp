@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Strong motion of Japan's K-NET and KiK-net (NIED): 17 lines of names and values, then whole
 // numbers. https://www.kyoshin.bosai.go.jp/kyoshin/man/knetform_en.html
 #include <algorithm>

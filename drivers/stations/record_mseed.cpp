@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // miniSEED 2, the format of seismic networks.
 #include <libmseed.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Seismic Analysis Code, binary: one channel a file.
 #include <algorithm>
 #include <array>

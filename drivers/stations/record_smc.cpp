@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Accelerograms of the U.S. Geological Survey's SMC format: 11 lines of text, 48 integers, 50 real
 // numbers, comments, values in cm/s2. Converse, Brady (1992), USGS Open-File Report 92-296A.
 #include <cmath>

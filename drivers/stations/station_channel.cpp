@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/stations/station_channel.h"
 
 #include <algorithm>

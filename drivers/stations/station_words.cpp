@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/stations/station_words.h"
 
 #include <algorithm>

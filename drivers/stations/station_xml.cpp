@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // FDSN StationXML: the parts that a record of accelerations needs.
 // https://docs.fdsn.org/projects/stationxml
 #include "drivers/stations/station_xml.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/gap/axis_correction.h"
 
 #include <algorithm>

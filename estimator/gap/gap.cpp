@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/gap/gap.h"
 
 #include <algorithm>

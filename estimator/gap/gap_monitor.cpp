@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/gap/gap_monitor.h"
 
 #include <algorithm>

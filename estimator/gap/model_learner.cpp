@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/gap/model_learner.h"
 
 #include <algorithm>

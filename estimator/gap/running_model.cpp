@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/gap/running_model.h"
 
 #include <algorithm>

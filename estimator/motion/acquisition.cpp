@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/motion/acquisition.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimator/numeric/nan.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/motion/axis_guard.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/motion/derivative_triple.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/motion/noise_meter.h"
 
 #include <algorithm>

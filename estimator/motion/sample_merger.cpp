@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/motion/sample_merger.h"
 
 #include <algorithm>

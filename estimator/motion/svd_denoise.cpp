@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/motion/svd_denoise.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Complex numbers of the frequency domain.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/numeric/eigenvalues.h"
 
 #include <cmath>

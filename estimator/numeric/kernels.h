@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 // The inner loops of the per-sample path and of diagnose, compiled once per instruction set. They

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // All kernels, compiled for one instruction set. One source per instruction set includes this
 // header and defines FRAMEWATCH_VECTOR_BYTES first. Here are the kernels of diagnose (complex
 // matrices of several frequencies side by side) and of right-hand sides with many columns;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #define FRAMEWATCH_VECTOR_BYTES 16
 #include "estimator/numeric/kernels_body.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Vectors as wide as the registers of one instruction set, and the kernels of the regression:
 // filtered rows, Gram matrices, the story-ordered Cholesky factorization, and the boxplot's sorted
 // array. kernels_body.h includes this header. The including source defines FRAMEWATCH_VECTOR_BYTES,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiled with -march=x86-64-v3 where the compiler supports it (estimator/CMakeLists.txt).
 #include "estimator/numeric/kernels.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/numeric/solve.h"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/pipeline/pipeline.h"
 
 #include <utility>

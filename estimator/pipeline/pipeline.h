@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <memory>
@@ -31,14 +32,14 @@ struct PipelineCounters {
 struct PipelineResult {
   /// A calibrated instant. It comes before the estimates that it completes.
   const SampleSet* instant = nullptr;
-  /// Of the main window that ends now.
+  /// The estimate of the main window that ends now.
   const WindowEstimate* estimate = nullptr;
-  /// Of a window of another length (EstimatorOptions::other_windows_s).
+  /// The estimate of a window of another length (EstimatorOptions::other_windows_s).
   const WindowEstimate* other = nullptr;
   /// How far the model may be wrong, once per window length.
   const ModelFit* model = nullptr;
-  /// Of a window that was held back while the filters were not tuned to the building. Ends in the
-  /// past.
+  /// The estimate of a window that was held back while the filters were not tuned to the building.
+  /// It ends in the past.
   const WindowEstimate* late = nullptr;
 };
 
@@ -52,12 +53,12 @@ class Pipeline {
   explicit Pipeline(const PipelineConfig& config);
   ~Pipeline();
 
-  /// The row filters are tuned to this from the first sample on, as after a pass over the same
-  /// record. To be called before the first sample. Precondition: the tuning is of a pipeline with
-  /// the same structure and axes. Of no effect where options.self_tune is false.
+  /// Tunes the row filters, as after a pass over the same record. Call it before the first sample,
+  /// with the tuning of a pipeline that has the same structure and axes. Does nothing without
+  /// options.self_tune.
   void start_tuned(const Tuning& tuning);
-  /// What the row filters are tuned to; empty while the noise of an axis is not known, and where
-  /// options.self_tune is false.
+  /// Returns what the row filters are tuned to. Returns nullopt while the noise of an axis is not
+  /// known, and without options.self_tune.
   std::optional<Tuning> tuning() const;
 
   /// Takes a sample of one axis at one instant, in any order within options.lateness_s. Returns the
@@ -69,23 +70,23 @@ class Pipeline {
   const PipelineResult* next();
 
   const ParameterTable& parameters() const;
-  /// The configured axes with the remaining fractions of their delays in calibrated instants.
+  /// Returns the configured axes with the remaining fractions of their delays.
   const std::vector<SensorAxis>& axes() const;
-  /// The parameters that the filters are tuned to now, theta order, SI: the design at first, then
-  /// docs/equations.md (23).
+  /// Returns the parameters that the filters are tuned to now, theta order, SI: the design at
+  /// first, then docs/equations.md (23).
   const Eigen::VectorXd& theta0() const;
-  /// Noise the channels' rows are weighted by now, m/s^2/sqrt(Hz), configured or measured; empty
-  /// while it is not known.
+  /// Returns the noise density of each axis, m/s^2/sqrt(Hz), configured or measured. Returns an
+  /// empty vector while it is not known.
   std::vector<double> noise_density() const;
   int window_rows() const;
-  /// Of EstimatorOptions::other_windows_s, rounded to whole blocks.
+  /// Returns the lengths of the other windows (EstimatorOptions::other_windows_s), in whole blocks.
   std::vector<int> other_window_rows() const;
   int hop_rows() const;
   PipelineCounters counters() const;
 
-  /// Everything that later results depend on. A pipeline of the same configuration that load()s it
-  /// continues as this one would, to the bit; after a load() that is false it must not be used any
-  /// more.
+  /// Save everything that later results depend on, and load it. A pipeline of the same
+  /// configuration then continues as this one would, to the bit. Do not use the pipeline after
+  /// load() returned false.
   void save(StateWriter& state);
   [[nodiscard]] bool load(StateReader& state);
 

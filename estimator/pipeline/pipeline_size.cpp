@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/pipeline/pipeline_size.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ constexpr double kColumns = 40;        // of BatchMeans: blocks and perturbed de
 constexpr double kVectorHead = 40;     // a small vector's own bytes and malloc's
 constexpr double kPerParameter = 220;  // of a WindowEstimate and of a solution
 
-/// The estimation's sizes in doubles: whoever sets absurd ones shall not overflow an integer.
+/// The sizes of an estimation, as doubles: absurd options must not overflow an integer.
 struct Sizes {
   explicit Sizes(const PipelineConfig& c)
       : options(c.options),

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/refine/group_likelihood.h"
 
 #include <algorithm>

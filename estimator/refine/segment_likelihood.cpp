@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/refine/segment_likelihood.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/refine/spectrum.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/refine/window_likelihood.h"
 
 #include <algorithm>

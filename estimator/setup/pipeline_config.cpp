@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/setup/pipeline_config.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/shaking/placard.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/shaking/story_drift.h"
 
 #include <algorithm>

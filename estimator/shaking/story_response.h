@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <array>
@@ -9,8 +10,8 @@
 #include <Eigen/Core>
 
 #include "estimator/identify/estimate/estimate.h"
-#include "estimator/motion/derivative_triple.h"
 #include "estimator/identify/groups/floor_motion.h"
+#include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/sample.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/setup/pipeline_config.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/simulate/ground_motion.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/simulate/linear_building.h"
 
 #include <algorithm>

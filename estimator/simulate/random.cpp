@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/simulate/random.h"
 
 #include <algorithm>

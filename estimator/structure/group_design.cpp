@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/structure/group_design.h"
 
 namespace framewatch::estimator {

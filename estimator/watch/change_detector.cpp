@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/watch/change_detector.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/watch/recovery.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <array>
@@ -68,10 +69,9 @@ struct RecoveryLaw {
   RecoveryReason reason = RecoveryReason::few_windows;
 };
 
-/// Decides whether a loss of stiffness after strong motion is lasting, or the fatigue from which
-/// frames and rock recover with the logarithm of time ("slow dynamics": TenCate, Smith, Guyer,
-/// Phys. Rev. Lett. 85, 2000, 1020; Snieder, Sens-Schoenfelder, Wu, Geophys. J. Int. 208, 2017, 1).
-///
+/// Decides whether a loss of stiffness after strong motion is lasting, or recovers with the
+/// logarithm of time ("slow dynamics"). Sources: TenCate, Smith, Guyer, Phys. Rev. Lett. 85 (2000),
+/// 1020; Snieder, Sens-Schoenfelder, Wu, Geophys. J. Int. 208 (2017), 1.
 ///
 /// Windows are summed by the logarithm of the time since the motion, so the state is bounded. The
 /// law is fitted to these means by weighted least squares, with the errors of baseline and

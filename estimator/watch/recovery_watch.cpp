@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/watch/recovery_watch.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/watch/window_history.h"
 
 #include <algorithm>

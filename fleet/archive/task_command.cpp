@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/archive/task_command.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/hub/hub_commands.h"
 
 #include <csignal>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/hub/setup.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/hub/users_file.h"
 
 #include <algorithm>

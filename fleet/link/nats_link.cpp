@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/link/nats_link.h"
 
 #include <sys/eventfd.h>
@@ -18,8 +19,8 @@
 #include <fmt/core.h>
 #include <nats/nats.h>
 
-#include "daemon/base/process.h"
 #include "daemon/base/clocks.h"
+#include "daemon/base/process.h"
 #include "drivers/files/descriptor.h"
 #include "fleet/message/message.h"
 

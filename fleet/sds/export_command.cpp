@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/sds/export_command.h"
 
 #include <fmt/core.h>

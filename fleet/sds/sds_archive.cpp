@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/sds/sds_archive.h"
 
 #include <libmseed.h>

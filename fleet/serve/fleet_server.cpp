@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/serve/fleet_server.h"
 
 #include <microhttpd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/serve/people.h"
 
 #include <algorithm>

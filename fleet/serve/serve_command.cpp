@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/serve/serve_command.h"
 
 #include <poll.h>

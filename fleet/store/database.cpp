@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/store/database.h"
 
 #include <bit>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/store/fleet_store.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/uplink/newest_messages.h"
 
 #include <algorithm>

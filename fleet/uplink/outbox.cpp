@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/uplink/outbox.h"
 
 #include <sys/stat.h>
@@ -16,8 +17,8 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/monitor/events/event_messages.h"
 #include "daemon/base/utc_time.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_schema.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/uplink/raw_sender.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/uplink/sent_store.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/uplink/uplink_command.h"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/view/earthquake_view.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/view/rows.h"
 
 #include <fmt/core.h>

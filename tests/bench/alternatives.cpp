@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiled once per instruction set; MAKE_ALTERNATIVE names the factory of this one.
 #include "tests/bench/alternatives.h"
 

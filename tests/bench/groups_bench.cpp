@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a shift costs of buildings with sensors on few floors, beside the 5-story building of the
 // paper's Table 1 with one on every frame, in one run on one core.
 #include <cmath>

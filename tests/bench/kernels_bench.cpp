@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The inner loops one by one, for every instruction set this machine has (google-benchmark).
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // From the arrival of a sample on the socket to the publication of its estimate, live over LCM's
 // multicast on this machine: a child process is the building, this one estimates.
 #include <sys/prctl.h>

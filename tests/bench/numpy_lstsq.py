@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """numpy_lstsq.py ROWS COLUMNS: microseconds numpy's batch least squares takes for one window."""
 import sys
 import time

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/bench/shaken_building.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What one shift of the window costs, ours and by dense algebra, side by side in one run on one
 // core.
 #include <malloc.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // The four answers of the page in what can happen to a building: quiet, shaking, damaged, acknowledged, a
 // sensor that dies, opened after all of it. A screenshot of each, and the words that must be on it.

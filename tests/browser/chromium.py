@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Headless Chromium of a test's own, driven over its pipe (Chrome DevTools Protocol): Debian's package alone, no npm."""
 import json
 import os

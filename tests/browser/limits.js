@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // What the page must bear with the paper's building of 3x3 bays at 100 Hz: every row, 50 frames/s, 200
 // viewers, 2000 connections that dawdle, and an estimator that does not notice any of them.

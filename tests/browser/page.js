@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // The page of `framewatch serve` beside `framewatch run`, `framewatch record` and a virtual test over LCM:
 // what it shows is what LCM carried, a drop of stiffness is named in time, a session is recorded and its

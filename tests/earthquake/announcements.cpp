@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/earthquake/announcements.h"
 
 #include <algorithm>

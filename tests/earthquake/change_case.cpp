@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/earthquake/change_case.h"
 
 #include <algorithm>

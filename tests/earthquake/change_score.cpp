@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/earthquake/change_score.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // changes: what is announced of a change of stiffness, when, and how right its size is.
 #include <chrono>
 #include <cmath>

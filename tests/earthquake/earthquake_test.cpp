@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The studies of an earthquake's minutes judge right: known answers, and short runs of both.
 #include <cmath>
 #include <limits>

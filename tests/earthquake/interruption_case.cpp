@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/earthquake/interruption_case.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/earthquake/interruption_tables.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // interruptions: what is estimated after a start in motion or an interruption, and how soon.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // CAN frames one after the other, with the times at which they were received.
 #include <cmath>
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A log of `candump -l`.
 #include "drivers/can/can_log.h"
 #include "tests/fuzz/targets.h"

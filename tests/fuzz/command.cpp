@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a connection to a daemon's command socket sends: the packet, and the command in it.
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/session_command_t.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The database of a history, changed by somebody, and what is asked of it.
 #include <filesystem>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A DBC file, and numbers in frames as it says.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a browser, or something else, sends to the page's server; over a connection, as it comes.
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An LCM event log, plain or compressed: whoever reads one.
 #include <cstdint>
 

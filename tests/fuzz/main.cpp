@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // fuzz TARGET [libFuzzer's arguments], fuzz TARGET --seeds FOLDER, fuzz --list. CONTRIBUTING.md
 // says more.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/fuzz/message_sequence.h"
 
 #include <algorithm>

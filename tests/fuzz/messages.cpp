@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every message type: decoded, written again, shown.
 #include <framewatch/message_layouts.hpp>
 

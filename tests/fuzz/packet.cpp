@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Datagrams of LCM's UDP multicast, of several senders, and the messages that their parts make.
 #include "drivers/lcm/multicast/fragment_assembly.h"
 #include "drivers/lcm/multicast/lcm_packet.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages one after the other, as `framewatch serve` hears them: the page and the metrics.
 #include <array>
 

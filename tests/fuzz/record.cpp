@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Record files: text of every format, miniSEED, MATLAB; and what `framewatch init` makes of their
 // titles.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages one after the other, as `framewatch run` hears them: to the end of an estimation, whose
 // own messages must be good ones.
 #include <cmath>

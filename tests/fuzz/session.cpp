@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // session.json of a recorded session, as page and report read it.
 #include "daemon/tools/report/session_file.h"
 #include "tests/fuzz/targets.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A state file a section of which somebody changed and signed again: the section is refused, or the
 // estimation goes on with it.
 #include <optional>

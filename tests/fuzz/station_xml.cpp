@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // StationXML: its elements, and what is made of them for a record of that channel.
 #include <cmath>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // TOML files: configuration, scenario, expectation, baseline.
 #include "daemon/config/learned_files.h"
 #include "daemon/tools/replay/expectation.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """When which event was in the database, as `fleet serve` would read it."""
 import threading
 import time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a hub and its workers make of bad input: messages that are none, floods, clocks that jump, a hub that is full,
 certificates that are over."""
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A building at the hub: real `framewatch uplink`, real `framewatch run` where one is wanted, and events that this test
 adds to its history as `run` would."""
 import os

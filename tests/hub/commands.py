@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Commands of people at the page to a building that moves: who may give them, what comes of each, what the journal says."""
 import json
 import os

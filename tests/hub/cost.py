@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a hub of a thousand buildings costs, how fast it takes what an hour without it left, and what an uplink costs."""
 import base64
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A PostgreSQL of this test's own, on a Unix socket."""
 import glob
 import os

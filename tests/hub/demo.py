@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """demo.py PROGRAM [--seconds S] [--speed N] [--port N] [--keep DIR]: a hub of three servers, PostgreSQL, six virtual
 buildings with a real `run` and `uplink` each, one earthquake, one building that loses 15 % of a frame; the overview in the
 browser. Ends by itself with a table of what happened. Exit status: 0 all of it is seen, 1 not, 2 something is missing."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Faults of hub, line, centre and building, one after the other, while three real buildings go on; afterwards everything
 must be in the database, once."""
 import json

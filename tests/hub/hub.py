@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Three nats-servers of this test's own, as deploy/fleet/ describes them, and workers at them."""
 import os
 import re

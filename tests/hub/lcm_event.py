@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An event_t as LCM encodes it, and LCM's datagram of it."""
 import socket
 import struct

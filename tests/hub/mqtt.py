@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Building automation hears of the hub's buildings over MQTT, from the real nats-server, and can say nothing."""
 import json
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A client of NATS with no more than the tests need: TLS, publish, subscribe, request, and what a server denies."""
 import json
 import re

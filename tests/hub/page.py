@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """`framewatch fleet serve` of a test's own, and what it answers to a person."""
 import json
 import subprocess

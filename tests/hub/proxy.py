@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """proxy.py LISTEN:TARGET...: forwards TCP on this machine. Stopped (SIGSTOP) it is a line that is dead without a word."""
 import asyncio
 import sys

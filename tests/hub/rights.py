@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the certificate of a building may do at a real server, and what not."""
 import base64
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """`framewatch run` gives the same bytes with a hub, without one, and beside an uplink that is killed again and again."""
 import os
 import shutil

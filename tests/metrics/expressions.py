@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """expressions.py PROMETHEUS BOARD: asks a Prometheus every expression of the board and of the rules
 that it has loaded. Exit 1 when one is no PromQL, or has no series although a building shakes, or when an alert
 fires that should not."""

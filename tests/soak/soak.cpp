@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // soak: a building's months in hours, and whether all is well then.
 #include <cstdio>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/soak/soak_run.h"
 
 #include <malloc.h>

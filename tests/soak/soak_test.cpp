@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A short soak: the same happens in ten minutes that happens in 30 days.
 #include "tests/soak/soak_run.h"
 

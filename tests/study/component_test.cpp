@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Component tests simulated here, with separate equations and integration.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/study/linear_share.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/study/practice.h"
 
 #include <algorithm>

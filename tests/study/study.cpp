@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // diagnose_study: seeded cases for `framewatch diagnose`, and its results for them.
 #include <sys/wait.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/study/study_building.h"
 
 #include "estimator/structure/natural_frequencies.h"

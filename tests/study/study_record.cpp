@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/study/study_record.h"
 
 #include <algorithm>

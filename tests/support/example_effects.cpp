@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/example_effects.h"
 
 #include <algorithm>

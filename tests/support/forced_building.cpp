@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/forced_building.h"
 
 #include "estimator/numeric/eigenvalues.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/history_fixture.h"
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/noisy_stretch.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/paper_buildings.h"
 
 #include "daemon/tools/lab/data_files.h"

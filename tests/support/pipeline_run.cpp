@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/pipeline_run.h"
 
 #include <cmath>

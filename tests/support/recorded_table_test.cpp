@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/recorded_table_test.h"
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/restless_building.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/shaken_minute.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/support/softening_tower.h"
 
 #include <cmath>

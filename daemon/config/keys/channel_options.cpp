@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/keys/channel_options.h"
 
 #include "daemon/config/keys/option_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/keys/section_table.h"
 
 #include <cmath>

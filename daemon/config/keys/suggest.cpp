@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/keys/suggest.h"
 
 #include <algorithm>

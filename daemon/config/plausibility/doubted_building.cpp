@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/plausibility/doubted_building.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Plausible ranges of buildings and of shaking-table models. Values outside get a warning.
 #pragma once
 

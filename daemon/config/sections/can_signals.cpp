@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/sections/can_signals.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/sections/config_problems.h"
 
 #include <algorithm>

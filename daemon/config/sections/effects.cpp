@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/sections/effects.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/sections/fragility.h"
 
 #include <algorithm>

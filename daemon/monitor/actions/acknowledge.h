@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/acknowledged_t.hpp>
 
-#include "daemon/base/log.h"
 #include "daemon/base/clocks.h"
+#include "daemon/base/log.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/service/service_manager.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/actions/action_report.h"
 
 #include <lcm/lcm-cpp.hpp>

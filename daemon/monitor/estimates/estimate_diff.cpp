@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimates/estimate_diff.h"
 
 #include <algorithm>

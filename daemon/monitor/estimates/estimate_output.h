@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <cstdint>
@@ -8,8 +9,8 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
-#include "drivers/files/partial_file.h"
 #include "drivers/files/file_problems.h"
+#include "drivers/files/partial_file.h"
 #include "drivers/files/text_output.h"
 #include "drivers/records/record.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimates/session_estimates.h"
 
 #include <algorithm>

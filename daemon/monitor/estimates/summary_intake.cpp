@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimates/summary_intake.h"
 
 #include <algorithm>

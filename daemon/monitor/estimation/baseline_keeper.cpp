@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimation/baseline_keeper.h"
 
 #include <fmt/core.h>

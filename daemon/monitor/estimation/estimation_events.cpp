@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimation/estimation_events.h"
 
 #include <cmath>

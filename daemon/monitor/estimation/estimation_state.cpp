@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Saves and loads the state of an estimation, and takes it over from another one.
 #include <algorithm>
 #include <iterator>

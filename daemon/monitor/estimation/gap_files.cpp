@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimation/gap_files.h"
 
 #include <algorithm>

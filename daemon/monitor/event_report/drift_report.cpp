@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/event_report/drift_report.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/event_report/event_report_files.h"
 
 #include <algorithm>

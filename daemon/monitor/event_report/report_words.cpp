@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/event_report/report_words.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/events/event_messages.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/events/raised_events.h"
 
 #include <algorithm>

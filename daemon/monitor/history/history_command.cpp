@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/history_command.h"
 
 #include <algorithm>

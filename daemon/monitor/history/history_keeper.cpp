@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/history_keeper.h"
 
 #include <fcntl.h>
@@ -26,8 +27,8 @@
 #include "drivers/files/caught.h"
 #include "drivers/files/durable_file.h"
 #include "drivers/files/input_file.h"
-#include "drivers/files/partial_file.h"
 #include "drivers/files/packed_file.h"
+#include "drivers/files/partial_file.h"
 #include "drivers/lcm/count_block.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"

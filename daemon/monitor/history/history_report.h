@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/history_status_t.hpp>
 
-#include "daemon/base/sqlite_file.h"
 #include "daemon/base/clocks.h"
+#include "daemon/base/sqlite_file.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/history/history.h"

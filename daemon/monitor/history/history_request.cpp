@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/history_request.h"
 
 #include <fnmatch.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/raw_history_reader.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/summary_history.h"
 
 #include <algorithm>

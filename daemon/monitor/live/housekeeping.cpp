@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/live/housekeeping.h"
 
 #include <utility>

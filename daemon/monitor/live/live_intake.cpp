@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/live/live_intake.h"
 
 #include <poll.h>

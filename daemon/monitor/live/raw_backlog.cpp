@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/live/raw_backlog.h"
 
 #include <algorithm>

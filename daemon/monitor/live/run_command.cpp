@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/live/run_command.h"
 
 #include <unistd.h>
@@ -31,9 +32,9 @@
 #include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/monitor/service/start_count.h"
-#include "drivers/files/partial_file.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/input_file.h"
+#include "drivers/files/partial_file.h"
 
 namespace framewatch::daemon {
 namespace {

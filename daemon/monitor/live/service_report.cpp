@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/live/service_report.h"
 
 #include "daemon/base/clocks.h"
@@ -22,9 +23,9 @@ ServiceReport::ServiceReport(const StartCount& starts, bool resumed)
     : starts_(starts), resumed_(resumed), started_us_(host_clock_us()) {}
 
 std::optional<service_t> ServiceReport::collect(const LiveEstimation& live,
-                                             const std::vector<RaisedEvents*>& raised,
-                                             const StateKeeper& state, const ReloadCount& reloads,
-                                             std::int64_t now_us) {
+                                                const std::vector<RaisedEvents*>& raised,
+                                                const StateKeeper& state,
+                                                const ReloadCount& reloads, std::int64_t now_us) {
   if (!second_.due(now_us)) return std::nullopt;
   const LiveTimes& times = live.times();
   service_t m{};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/live/state_keeper.h"
 
 #include <chrono>

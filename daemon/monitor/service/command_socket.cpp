@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/service/command_socket.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/service/health.h"
 
 #include <algorithm>
@@ -37,24 +38,21 @@ void of_process(const service_t& s, const Config& config, std::int64_t now_us,
                 std::vector<std::string>& out) {
   const double age_s = seconds_between(s.started_us, now_us);
   if (s.unclean_starts > 0 && age_s < kYoung_s)
-    out.push_back(fmt::format(
-        "it began anew {} ago; {} of {} starts came after a run that nobody had told to stop: "
-        "journalctl -u framewatch",
-        span_text(age_s), s.unclean_starts, s.starts));
+    out.push_back(
+        fmt::format("it started {} ago; {} of {} starts followed a crash: journalctl -u framewatch",
+                    span_text(age_s), s.unclean_starts, s.starts));
   if (s.version != FRAMEWATCH_VERSION)
     out.push_back(fmt::format("it is version {}, this program is {}: systemctl restart framewatch",
                               s.version, FRAMEWATCH_VERSION));
   if (!s.reload_problem.empty())
-    out.push_back("its configuration was refused when read anew: " + s.reload_problem);
+    out.push_back("the reloaded configuration was refused: " + s.reload_problem);
   else if (s.config_sha256 != config.sha256)
     out.push_back(
-        fmt::format("it runs with another configuration than {} holds now: systemctl "
-                    "reload framewatch",
-                    config.path));
+        fmt::format("{} has changed since it was read: systemctl reload framewatch", config.path));
   if (!s.state_problem.empty())
-    out.push_back("its state cannot be written, a restart loses the window: " + s.state_problem);
+    out.push_back("its state cannot be written, so a restart loses the window: " + s.state_problem);
   if (s.disk_free_bytes >= 0 && s.disk_free_bytes < kLittleDisk_bytes)
-    out.push_back(fmt::format("{:.1f} GB of disk are left where its state goes",
+    out.push_back(fmt::format("{:.1f} GB are free on the disk of its state file",
                               1e-9 * static_cast<double>(s.disk_free_bytes)));
 }
 
@@ -69,7 +67,7 @@ void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string
   const double silent = silent_s(s, now_us);
   if (silent > kSilent_s) {
     out.push_back(s.received_us == 0
-                      ? fmt::format("no sample has come since it began, {} ago", span_text(silent))
+                      ? fmt::format("no samples since it started {} ago", span_text(silent))
                       : fmt::format("no samples for {}", span_text(silent)));
     return;
   }
@@ -77,7 +75,7 @@ void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string
   for (std::size_t i = 0; i < s.name.size(); ++i)
     if (*newest - s.newest_us[i] > kBehind_us && !is_raised(s, "channel_silent", s.name[i]))
       out.push_back(s.newest_us[i] == 0
-                        ? fmt::format("{}: nothing has come from it", s.name[i])
+                        ? fmt::format("{}: no samples yet", s.name[i])
                         : fmt::format("{}: silent for {}", s.name[i],
                                       span_text(seconds_between(s.newest_us[i], *newest))));
   if (!heard.first_status || heard.first_status->name.size() != heard.status->name.size()) return;
@@ -94,7 +92,7 @@ void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string
           fmt::format("{}: {} of its samples were rejected", heard.status->name[i], rejected));
   }
   if (heard.status->queue_dropped > heard.first_status->queue_dropped)
-    out.push_back("messages are lost to a full queue: this machine does not keep up");
+    out.push_back("a full queue drops messages: this machine is too slow");
 }
 
 void of_punctuality(const Heard& heard, std::vector<std::string>& out) {
@@ -109,10 +107,10 @@ void of_punctuality(const Heard& heard, std::vector<std::string>& out) {
 
 void of_watch(const watch_t& w, const Config& config, std::vector<std::string>& out) {
   if (config.watch && !config.watch->temperature_channel.empty() && std::isnan(w.temperature_degc))
-    out.push_back(fmt::format("no temperature is heard on {}", config.watch->temperature_channel));
+    out.push_back(fmt::format("no temperature on {}", config.watch->temperature_channel));
 }
 
-/// Trouble that is raised as an event is told, or acknowledged, as that.
+/// Adds troubles of the history that are not raised as events.
 void of_history(const history_status_t& s, const service_t& service,
                 std::vector<std::string>& out) {
   if (!s.raw_trouble.empty() && !is_raised(service, "history", "raw"))
@@ -125,12 +123,13 @@ void of_uplink(const Heard& heard, const Config& config, std::int64_t now_us,
                std::vector<std::string>& out) {
   if (!config.fleet) return;
   if (!heard.uplink) {
-    out.push_back("nothing is heard of framewatch uplink: systemctl status framewatch-uplink");
+    out.push_back("framewatch uplink does not report: systemctl status framewatch-uplink");
     return;
   }
   const uplink_status_t& s = *heard.uplink;
   if (!s.store_trouble.empty())
-    out.push_back("what waits for the hub cannot be read or noted: " + s.store_trouble);
+    out.push_back("the messages that wait for the hub cannot be read or written: " +
+                  s.store_trouble);
   if (const double silent = seconds_between(std::max(s.acknowledged_us, s.started_us), now_us);
       silent > kHubSilent_s)
     out.push_back(fmt::format("the hub has acknowledged nothing for {}{}", span_text(silent),
@@ -146,7 +145,7 @@ void of_reception(const Heard& heard, std::vector<std::string>& out) {
 void of_actions(const action_status_t& s, std::vector<std::string>& out) {
   for (std::size_t i = 0; i < s.name.size(); ++i) {
     if (!s.trouble[i].empty())
-      out.push_back(fmt::format("the {} of [actions] tells nobody: {}", s.name[i], s.trouble[i]));
+      out.push_back(fmt::format("{} notifications of [actions] fail: {}", s.name[i], s.trouble[i]));
     else if (s.lost_us[i] > 0 && s.time_us - s.lost_us[i] < kDay_us)
       out.push_back(fmt::format("the {} of [actions] has lost {} events, the last one {} ago",
                                 s.name[i], s.lost[i],

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/service/open_lcm.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Shows the four answers and the open findings as the server sends them, without judging.
 let told = {answers: [], findings: [], drift: []};

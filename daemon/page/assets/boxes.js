@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Boxplots of one kind of parameter as in the paper's Figure 10, with references and the newest value:
 // each relative to its reference, or each in its unit on a separate scale.

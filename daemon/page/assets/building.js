@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // The building in 3D: frames as walls between floors, panels as floors, moved by the floors' motion.
 const kMaxExaggeration = 2000;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // The tables of channels and buses with their counters.
 let counted = null;

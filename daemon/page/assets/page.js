@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Connects the event stream to the drawings. All numbers come from the events.
 const $ = id => document.getElementById(id);

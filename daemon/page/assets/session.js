@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Acquisition sessions: the state of `framewatch record` and its commands.
 const sessionStates = ['ready', 'tap test', 'armed', 'recording'];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Histories on uPlot. Rings are mirrored so that the newest stretch is one subarray. x: sensor time, s.
 class Ring {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Numbers, units and times as people write them.
 let zone = localStorage.getItem('zone') || 'UTC';

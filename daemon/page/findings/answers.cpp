@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/findings/answers.h"
 
 #include <algorithm>

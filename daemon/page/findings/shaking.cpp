@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/findings/shaking.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/findings/status_command.h"
 
 #include <algorithm>

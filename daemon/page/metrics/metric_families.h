@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <cmath>
@@ -24,7 +25,6 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/monitor/event_report/event_report_files.h"
-#include "daemon/page/metrics/metrics.h"
 
 namespace framewatch::daemon {
 

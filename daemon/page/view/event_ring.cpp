@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/view/event_ring.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/view/live_view.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/view/page_alarms.h"
 
 #include <algorithm>

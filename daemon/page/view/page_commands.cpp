@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/view/page_commands.h"
 
 #include <utility>

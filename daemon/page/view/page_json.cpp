@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/view/page_json.h"
 
 #include <algorithm>

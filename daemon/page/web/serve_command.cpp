@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/web/serve_command.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/web/web_answer.h"
 
 #include <netdb.h>

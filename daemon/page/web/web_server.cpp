@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/page/web/web_server.h"
 
 #include <microhttpd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/commands/check_report.h"
 
 #include <algorithm>

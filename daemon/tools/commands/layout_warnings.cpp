@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/commands/layout_warnings.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/commands/selftest_command.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/demo/demo_network.h"
 
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/demo/demo_scenario.h"
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/demo/demo_view.h"
 
 #include <sys/ioctl.h>

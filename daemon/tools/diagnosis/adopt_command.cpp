@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/diagnosis/adopt_command.h"
 
 #include <fmt/core.h>

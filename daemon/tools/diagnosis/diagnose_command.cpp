@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/diagnosis/diagnose_command.h"
 
 #include <algorithm>

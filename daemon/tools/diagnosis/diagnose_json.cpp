@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/diagnosis/diagnose_json.h"
 
 #include <nlohmann/json.hpp>

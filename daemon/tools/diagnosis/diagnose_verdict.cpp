@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/diagnosis/where_map.h"
 
 #include <algorithm>

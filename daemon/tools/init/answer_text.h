@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers as a person answers them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/init/building_toml.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/init/channel_questions.h"
 
 #include <algorithm>

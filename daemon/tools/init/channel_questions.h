@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Questions about channels and stations, and readers of their answers, as parts of InitQuestion.
 #pragma once
 

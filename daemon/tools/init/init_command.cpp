@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/init/init_command.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/init/station_layout.h"
 
 #include <algorithm>

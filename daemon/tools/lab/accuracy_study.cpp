@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/accuracy_study.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/accuracy_trial.h"
 
 #include <algorithm>
@@ -8,8 +9,8 @@
 
 #include "daemon/tools/lab/study_buildings.h"
 #include "estimator/motion/svd_denoise.h"
-#include "estimator/simulate/random.h"
 #include "estimator/simulate/linear_response.h"
+#include "estimator/simulate/random.h"
 #include "estimator/simulate/sensor_model.h"
 
 namespace framewatch::daemon {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/data_files.h"
 
 #include <algorithm>

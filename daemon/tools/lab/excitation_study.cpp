@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/excitation_study.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/few_sensors.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/reproduction_plots.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/reproduction_sections.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/study_buildings.h"
 
 #include <cmath>

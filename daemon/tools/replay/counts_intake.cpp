@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/counts_intake.h"
 
 #include <algorithm>

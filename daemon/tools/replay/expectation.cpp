@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/expectation.h"
 
 #include <algorithm>
@@ -7,8 +8,8 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/printable.h"
 #include "daemon/base/json.h"
+#include "daemon/base/printable.h"
 #include "daemon/base/toml_document.h"
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/floors_output.h"
 
 #include <cmath>

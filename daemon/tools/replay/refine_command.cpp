@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/refine_command.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/replay_survey.h"
 
 #include <algorithm>
@@ -16,8 +17,8 @@
 #include "drivers/can/can_log.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/standard_streams.h"
-#include "drivers/lcm/message_check.h"
 #include "drivers/lcm/count_block.h"
+#include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {

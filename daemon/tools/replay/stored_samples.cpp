@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/stored_samples.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/report/frame_loops.h"
 
 #include <algorithm>

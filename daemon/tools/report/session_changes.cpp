@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/report/session_changes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/report/session_motion.h"
 
 #include <algorithm>

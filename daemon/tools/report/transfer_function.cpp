@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/report/transfer_function.h"
 
 #include <algorithm>

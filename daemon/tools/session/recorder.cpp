@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/session/recorder.h"
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/process.h"
-#include "daemon/monitor/estimation/publisher.h"
 #include "daemon/monitor/estimation/estimation.h"
+#include "daemon/monitor/estimation/publisher.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "drivers/can/can_log.h"
 #include "drivers/files/text_output.h"

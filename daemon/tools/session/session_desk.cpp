@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/session/session_desk.h"
 
 #include <framewatch/session_command_t.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/session/session_finish.h"
 
 #include <unistd.h>

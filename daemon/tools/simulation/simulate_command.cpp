@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/simulation/simulate_command.h"
 
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/multicast/fragment_assembly.h"
 
 #include <iterator>

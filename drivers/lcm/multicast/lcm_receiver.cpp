@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/multicast/lcm_receiver.h"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/multicast/multicast_socket.h"
 
 #include <arpa/inet.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/fit/bin_products.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/fit/gap.h"
 
 #include <algorithm>

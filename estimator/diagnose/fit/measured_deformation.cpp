@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/fit/measured_deformation.h"
 
 #include <cmath>

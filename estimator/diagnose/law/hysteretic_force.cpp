@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/law/hysteretic_force.h"
 
 #include <algorithm>

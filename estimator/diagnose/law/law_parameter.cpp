@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/law/law_parameter.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/locate/large_lists.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/locate/locate.h"
 
 #include <algorithm>

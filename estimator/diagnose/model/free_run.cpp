@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/model/free_run.h"
 
 #include <algorithm>

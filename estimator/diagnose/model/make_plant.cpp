@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/model/make_plant.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/model/modal_damping.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/model/run_system.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/propose/element_proposals.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/propose/name_of_fit.h"
 
 #include <algorithm>

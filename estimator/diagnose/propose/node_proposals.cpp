@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/propose/node_proposals.h"
 
 #include <algorithm>

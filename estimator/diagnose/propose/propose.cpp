@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/propose/propose.h"
 
 #include <algorithm>

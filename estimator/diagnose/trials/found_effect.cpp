@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/trials/found_effect.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/trials/linear_gains.h"
 
 #include <algorithm>

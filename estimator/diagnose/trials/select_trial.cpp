@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/trials/select_trial.h"
 
 #include <algorithm>

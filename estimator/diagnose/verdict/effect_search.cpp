@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/verdict/effect_search.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/elements/deformations.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/elements/floor_layout.h"
 
 namespace framewatch::estimator {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/elements/guessed_design.h"
 
 #include <algorithm>

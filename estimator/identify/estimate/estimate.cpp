@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/estimate/estimate.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/gram/sliding_gram.h"
 
 #include <algorithm>

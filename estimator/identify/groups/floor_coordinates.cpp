@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/groups/floor_coordinates.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/groups/floor_motion.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/groups/group_equations.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/groups/group_tuning.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/groups/layout_prediction.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/groups/reduced_building.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/noise/axis_noise.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/noise/floor_noise.h"
 
 #include <algorithm>

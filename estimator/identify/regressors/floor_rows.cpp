@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/regressors/floor_rows.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/regressors/regressor_tuning.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/regressors/unknown_past.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/solve/batch_least_squares.h"
 
 #include "estimator/numeric/solve.h"

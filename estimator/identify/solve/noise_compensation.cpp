@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/solve/noise_compensation.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/solve/story_solver.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/window/self_tuning.h"
 
 #include <algorithm>

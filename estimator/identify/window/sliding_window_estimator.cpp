@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/window/sliding_window_estimator.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The part of SlidingWindowEstimator that follows the identified parameters: it retunes filters,
 // merges and splits groups of stories, and computes windows that were held back.
 #include <utility>

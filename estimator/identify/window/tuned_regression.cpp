@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/window/tuned_regression.h"
 
 #include <algorithm>

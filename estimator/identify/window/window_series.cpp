@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/window/window_series.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/window/window_solution.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // One building: findings, a parameter over time, newest values, sensors, commands.
 const kRanges = [['a day', 86400], ['a week', 7 * 86400], ['a month', 31 * 86400], ['a year', 366 * 86400], ['all', 40 * 366 * 86400]];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Before and after an earthquake: every building, the largest significant loss first.
 const quake = {time_us: null, data: null};

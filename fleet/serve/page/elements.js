@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Parts of the page. Text of buildings and people becomes text nodes, never markup.
 const $ = id => document.getElementById(id);

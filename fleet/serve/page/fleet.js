@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // Selects the view and polls the server.
 const kEvery_ms = {overview: 1000, building: 3000, earthquake: 3000, journal: 2000};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // The journal: commands to buildings and their answers.
 function openJournal(main) {

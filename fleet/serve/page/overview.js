@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 'use strict';
 // All buildings: counts, map, list by severity. Redrawn when something changes.
 const overview = {version: '', data: null, behind_us: 0, urgencies: new Set(), words: '', view: null};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/base/miniseed_file.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/config_size.h"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A record whose header says otherwise than the configuration.
 #include <string>
 

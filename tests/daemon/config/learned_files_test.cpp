@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/config/learned_files.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/can_intake.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/can/stream_timer.h"
 
 #include <cmath>

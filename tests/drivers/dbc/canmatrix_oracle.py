@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """canmatrix_oracle.py FILE.dbc: reads "id-with-flag hex-data" lines, prints "message.signal value"
 of every signal present, with python3-canmatrix; then a line "."."""
 import sys

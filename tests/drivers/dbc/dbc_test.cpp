@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/dbc/dbc.h"
 
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // MATLAB files as records.
 #include <algorithm>
 #include <cmath>

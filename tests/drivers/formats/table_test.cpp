@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tables with a header, as spreadsheets and loggers write them.
 #include <algorithm>
 #include <cmath>

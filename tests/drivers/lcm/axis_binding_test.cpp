@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/axis_binding.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/lcm_source.h"
 
 #include <cstdlib>

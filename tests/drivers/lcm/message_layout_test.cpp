@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/message_layout.h"
 
 #include <cstdio>

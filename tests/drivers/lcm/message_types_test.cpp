@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/lcm/message_check.h"
 
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "drivers/records/record_csv_writer.h"
 
 #include <limits>

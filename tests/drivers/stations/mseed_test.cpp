@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // miniSEED files of framewatch and of recorders.
 #include <algorithm>
 #include <array>

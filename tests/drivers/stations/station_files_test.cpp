@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Records in the formats of strong-motion networks.
 #include <algorithm>
 #include <bit>

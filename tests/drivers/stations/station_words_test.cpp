@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The places of instruments in the words of networks.
 #include <gtest/gtest.h>
 

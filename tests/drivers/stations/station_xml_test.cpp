@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // StationXML and what it says about the numbers in a miniSEED or SAC file.
 #include <cmath>
 #include <optional>

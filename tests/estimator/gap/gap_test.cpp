@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Simulation beside measurement: with the right model only noise remains, a wrong model raises an
 // event, and failing sensors do neither.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Inputs beyond the base's translations: a base that turns or rocks, and a shaker.
 #include <cmath>
 #include <memory>

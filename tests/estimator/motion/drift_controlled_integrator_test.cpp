@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/motion/drift_controlled_integrator.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/numeric/kernels.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // No sample of any bit pattern, and no second of them, on any one channel, moves a published value
 // by more than its standard error for longer than its window lasts, or silences it for longer than
 // kMaxSilence_s, and every one that no sensor can have measured is counted.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the estimator must reach on exact motion of the paper's buildings. The motion is the exact
 // response (first-order hold at 1 ms, band-limited, decimated), not the estimator's own scheme.
 

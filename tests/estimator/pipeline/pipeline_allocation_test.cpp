@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // After its construction a pipeline never asks the heap for anything, whatever the samples: Eigen
 // included. Counted by this program's own malloc, in front of glibc's.
 #include <atomic>

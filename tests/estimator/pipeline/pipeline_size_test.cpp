@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/pipeline/pipeline_size.h"
 
 #include <malloc.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What is published when little moves, when the sensors are biased, and of buildings nobody chose.
 // framewatch reproduce measures the same on more motions (docs/accuracy.md).
 

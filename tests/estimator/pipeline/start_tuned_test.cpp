@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A pipeline that is given its tuning loses no window while it finds it.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A pipeline that takes over another one's state goes on bit by bit as that one does, wherever the
 // input is cut. The state is loaded into a pipeline that has already seen other motion, so that a
 // member archive() forgets has another value than the one it should.

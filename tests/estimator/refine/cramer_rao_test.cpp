@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/refine/max_likelihood.h"
 
 #include <algorithm>

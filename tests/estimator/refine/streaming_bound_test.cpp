@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Distance of the streaming estimator from the Cramer-Rao bound; framewatch reproduce prints the
 // whole table for twenty motions (docs/accuracy.md).
 

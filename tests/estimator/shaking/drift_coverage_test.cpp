@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coverage of the stated 95 % intervals of peak drifts. FRAMEWATCH_DRIFT_RUNS=24 runs more
 // earthquakes of every layout and prints the table of docs/equations.md.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/shaking/left_out_floor.h"
 
 #include <cmath>

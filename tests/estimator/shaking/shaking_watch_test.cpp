@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/shaking/shaking_watch.h"
 
 #include <algorithm>

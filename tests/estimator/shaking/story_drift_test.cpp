@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Peak drifts and their errors: against closed forms, with interruptions, and without a stiffness.
 // drift_coverage_test.cpp tests how often the intervals hold.
 #include "estimator/shaking/story_drift.h"

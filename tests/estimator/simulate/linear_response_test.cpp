@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/simulate/linear_response.h"
 
 #include <algorithm>

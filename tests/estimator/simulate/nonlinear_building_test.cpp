@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/simulate/nonlinear_building.h"
 
 #include <algorithm>

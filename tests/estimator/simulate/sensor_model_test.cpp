@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/simulate/sensor_model.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compares the assembled matrices with the paper's appendix, coded as printed except for its
 // misprints (docs/equations.md). Nothing here uses elements.
 #include <vector>

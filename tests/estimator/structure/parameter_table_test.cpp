@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/structure/parameter_table.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/structure/story_groups.h"
 
 #include <cmath>

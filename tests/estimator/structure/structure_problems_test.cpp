@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/structure/structure.h"
 
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/watch/amplitude_curve.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Records of changes over synthetic windows.
 #include "estimator/watch/change_book.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Size, error and neighbors of a change's record, over simulated changes in buildings that the
 // model describes inexactly.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Baselines that follow temperature and amplitude: what they learn and which changes are then
 // found.
 #include "estimator/watch/dependence.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Changes of groups of stories between few sensors, in a building that softens while it moves.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Changes in weak motion, in which no ordinary window has a value, through the whole pipeline.
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Simulated series behind strong motion: recovery, lasting loss, both, too few windows, and an
 // intact building that is only softer while it moves more.
 #include "estimator/watch/recovery.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The recovery watch from instants and windows to renewals of a finding.
 #include "estimator/watch/recovery_watch.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/archive/archive_task.h"
 
 #include <string>

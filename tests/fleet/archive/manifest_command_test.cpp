@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/archive/manifest_command.h"
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/hub/certificates.h"
 
 #include <sys/stat.h>

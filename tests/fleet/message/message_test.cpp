@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/message/message.h"
 
 #include <string>

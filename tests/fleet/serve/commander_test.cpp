@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/serve/commander.h"
 
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/serve/person_command.h"
 
 #include <string>

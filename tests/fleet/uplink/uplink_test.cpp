@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/uplink/uplink.h"
 
 #include <framewatch/summary_t.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/view/comparison.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/view/overview.h"
 
 #include <utility>

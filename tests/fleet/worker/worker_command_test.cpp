@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "fleet/worker/worker_command.h"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "tests/guest/inner/guest.h"
 
 #include <sys/wait.h>

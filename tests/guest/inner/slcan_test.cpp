@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <net/if.h>
 #include <poll.h>
 #include <pty.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // fleet_load FOLDER CERTIFICATES COUNT HUB...: COUNT buildings with the uplink's own code in one
 // process, each with a line of its own, until SIGTERM. FOLDER/bN is the history of building N,
 // CERTIFICATES/bN.pem its certificate. A line a second: buildings connected, messages that wait and

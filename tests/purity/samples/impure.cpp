@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Everything the estimator must not do; tests/purity/symbols-check-fails expects each to be caught.
 #include <fcntl.h>
 #include <sys/socket.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the estimator may do; tests/purity/symbols-check-fails expects no complaint.
 #include <cmath>
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // [fragility]: HAZUS' limits, medians of one's own, and every way to write it wrong.
 #include <algorithm>
 #include <utility>

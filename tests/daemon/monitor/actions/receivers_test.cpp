@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/actions/receivers.h"
 
 #include <algorithm>

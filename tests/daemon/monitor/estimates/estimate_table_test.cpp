@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 

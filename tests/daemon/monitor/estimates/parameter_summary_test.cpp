@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimates/parameter_summary.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sends absurd samples by every input: messages, record files, CAN. They must be counted, the
 // channel named, and the estimates those of good input.
 

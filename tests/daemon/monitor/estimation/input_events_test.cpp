@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimation/input_events.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimation/state_file.h"
 
 #include <malloc.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Changes the contents of state files and makes their digests match. Each section must be refused
 // with a reason, or the estimation must continue with it and soon be well again.
 

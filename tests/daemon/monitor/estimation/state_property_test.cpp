@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An estimation that is cut at any instant and resumed from its state must publish the same bytes
 // as the uncut one: under every fault of the simulator, in buildings of every layout, with all
 // options that have a state. FRAMEWATCH_STATE_CASES sets the number of random cases.

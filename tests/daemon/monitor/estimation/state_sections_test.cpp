@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A state file is read section by section. One that is damaged, missing or of another configuration
 // costs only what depends on it, and the reader reports it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tests drift, damage and placard: one computation, shown in words, as a page and as JSON.
 #include "daemon/monitor/event_report/drift_report.h"
 

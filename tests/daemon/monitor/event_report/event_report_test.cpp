@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tests the report after strong motion: the verdict by thresholds, the files, their number, and the
 // event that names them.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <framewatch/event_t.hpp>
 #include <framewatch/temperature_t.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/monitor/live/reloader.h"

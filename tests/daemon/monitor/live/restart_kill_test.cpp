@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kills the program in the middle of an earthquake, as a power cut does (SIGKILL).
 #include <csignal>
 #include <cstdlib>

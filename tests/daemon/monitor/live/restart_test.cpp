@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kills and restarts a daemon during an earthquake. Its report must have the peaks of the time
 // before, from the raw samples of its history, and first name the time without samples.
 #include <algorithm>

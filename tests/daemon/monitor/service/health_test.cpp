@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
 
@@ -103,7 +104,8 @@ TEST(Health, SaysThatTheHubIsSilent) {
   h.uplink->started_us = kNow_us - 60 * kSecond_us;
   EXPECT_EQ(odd(h, config), "0 oddities");
   h.uplink->store_trouble = "disk I/O error";
-  EXPECT_EQ(odd(h, config), "what waits for the hub cannot be read or noted: disk I/O error");
+  EXPECT_EQ(odd(h, config),
+            "the messages that wait for the hub cannot be read or written: disk I/O error");
 }
 
 TEST(Health, SaysWhatIsOdd) {
@@ -113,7 +115,7 @@ TEST(Health, SaysWhatIsOdd) {
   h.service->newest_us[1] = 3 * kSecond_us;
   EXPECT_EQ(odd(h, config), "F1: silent for 7 s");
   h.service->newest_us[1] = 0;
-  EXPECT_EQ(odd(h, config), "F1: nothing has come from it");
+  EXPECT_EQ(odd(h, config), "F1: no samples yet");
   h = well(config);
   h.status->lost[0] = 4;
   EXPECT_EQ(odd(h, config), "base: loses 1.0 % of its samples");
@@ -125,14 +127,14 @@ TEST(Health, SaysWhatIsOdd) {
   EXPECT_EQ(odd(h, config), "30 % of the estimates come late");
   h = well(config);
   h.service->started_us = kNow_us - 30 * kSecond_us;
-  EXPECT_EQ(odd(h, config).substr(0, 26), "it began anew 30 s ago; 2 ");
+  EXPECT_EQ(odd(h, config).substr(0, 24), "it started 30 s ago; 2 o");
   h.service->unclean_starts = 0;
   EXPECT_EQ(odd(h, config), "0 oddities");
   h = well(config);
   h.service->config_sha256 = "other";
   EXPECT_NE(odd(h, config).find("reload"), std::string::npos);
   h.service->reload_problem = "b.toml:3: bad";
-  EXPECT_NE(odd(h, config).find("refused when read anew: b.toml:3: bad"), std::string::npos);
+  EXPECT_NE(odd(h, config).find("configuration was refused: b.toml:3: bad"), std::string::npos);
   h = well(config);
   h.service->version = "0.0.9";
   EXPECT_NE(odd(h, config).find("restart"), std::string::npos);
@@ -141,7 +143,7 @@ TEST(Health, SaysWhatIsOdd) {
   EXPECT_NE(odd(h, config).find("No space left on device"), std::string::npos);
   h = well(config);
   h.service->disk_free_bytes = 200'000'000;
-  EXPECT_EQ(odd(h, config), "0.2 GB of disk are left where its state goes");
+  EXPECT_EQ(odd(h, config), "0.2 GB are free on the disk of its state file");
   h = well(config);
   h.history.emplace();
   EXPECT_EQ(odd(h, config), "0 oddities");
@@ -154,7 +156,7 @@ TEST(Health, SaysWhatIsOdd) {
   h.actions->lost = {3};
   h.actions->lost_us = {kNow_us - 70 * kSecond_us};
   h.actions->trouble = {"the server answers 500"};
-  EXPECT_EQ(odd(h, config), "the webhook of [actions] tells nobody: the server answers 500");
+  EXPECT_EQ(odd(h, config), "webhook notifications of [actions] fail: the server answers 500");
   h.actions->trouble = {""};
   EXPECT_EQ(odd(h, config),
             "the webhook of [actions] has lost 3 events, the last one 1 min 10 s ago");

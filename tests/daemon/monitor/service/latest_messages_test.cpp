@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/service/latest_messages.h"
 
 #include <string>

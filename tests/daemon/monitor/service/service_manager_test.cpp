@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/monitor/service/service_manager.h"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page shows the events that `framewatch run` says are raised, and its own.
 #include "daemon/page/view/page_alarms.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/acknowledged_t.hpp>
 #include <framewatch/event_t.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/commands/convert_command.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Records as a diagnosis reads them, the channels it uses of them, and why it refuses one.
 #include <cmath>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A frame loses 10 % while the gap's model is learned, and after: the model is of before, and the
 // event names the frame.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The loop of issue 7: a gap is noticed live, its samples are stored, diagnose names what is
 // missing, the model is adopted while the program runs, and the gap is gone.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/init/dialogue.h"
 
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Channels of a building from the headers of its network's files.
 #include <string>
 

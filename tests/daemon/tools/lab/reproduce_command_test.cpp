@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/reproduce_command.h"
 
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What has been seen of CAN is part of a state: whoever goes on from it gives the same samples.
 #include <algorithm>
 #include <random>

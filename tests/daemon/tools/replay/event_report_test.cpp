@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A shaken building through the whole program: the report after it, the event that names it, and
 // the same bytes every time.
 #include <gtest/gtest.h>

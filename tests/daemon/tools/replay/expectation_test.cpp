@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/expectation.h"
 
 #include <gtest/gtest.h>

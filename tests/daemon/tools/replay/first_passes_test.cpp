@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/first_passes.h"
 
 #include <algorithm>

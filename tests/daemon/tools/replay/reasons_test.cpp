@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Why a parameter has no value, of half a minute of strong shaking.
 #include <functional>
 #include <sstream>

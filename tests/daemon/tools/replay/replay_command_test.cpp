@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/replay/replay_command.h"
 
 #include <matio.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The measured three-story table of data/mini_shake_table_xsens_2025, through the shipped
 // configuration. Reference: peaks of the measured transfer functions, 3.69, 11.2 and 16.6 Hz in the
 // Northridge run (the data's PROVENANCE.txt). docs/shaking-table.md discusses the numbers.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // [watch] through the whole program: learning, events, baseline files, a restart.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/report/report_command.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 

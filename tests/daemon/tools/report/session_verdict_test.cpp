@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A frame loses 15 % in the middle of a session: what the report says first, and that nothing in it
 // mixes the building before with the building after.
 #include <algorithm>

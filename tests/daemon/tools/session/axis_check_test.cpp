@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/session/axis_check.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/session/record_command.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "daemon/tools/simulation/simulation.h"
 #include "daemon/config/channel_addresses.h"
 

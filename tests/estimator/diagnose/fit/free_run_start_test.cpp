@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/fit/free_run_start.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/fit/whitened.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/locate/conjugate_step.h"
 
 #include <numeric>

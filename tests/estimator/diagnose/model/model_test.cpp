@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/model/model.h"
 #include "estimator/diagnose/law/law_parameter.h"
 

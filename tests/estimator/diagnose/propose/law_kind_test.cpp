@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/propose/law_kind.h"
 
 #include <algorithm>

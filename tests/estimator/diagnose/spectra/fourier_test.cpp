@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/spectra/fourier.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/spectra/record_segment.h"
 
 #include <cmath>

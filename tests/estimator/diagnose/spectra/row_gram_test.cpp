@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/spectra/row_gram.h"
 
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/spectra/weights.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/trials/catalogue_form.h"
 
 #include <algorithm>

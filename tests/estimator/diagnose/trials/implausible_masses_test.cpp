@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/trials/implausible_masses.h"
 
 #include <gtest/gtest.h>

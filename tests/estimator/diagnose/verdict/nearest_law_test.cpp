@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/diagnose/verdict/nearest_law.h"
 
 #include <gtest/gtest.h>

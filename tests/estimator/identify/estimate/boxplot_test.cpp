@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/estimate/boxplot.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A building driven by a shaker or a hammer on a base that rests.
 #include <algorithm>
 #include <cmath>

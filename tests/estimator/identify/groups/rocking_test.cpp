@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A rocking base whose vertical channels show the rotation.
 #include <algorithm>
 #include <cmath>

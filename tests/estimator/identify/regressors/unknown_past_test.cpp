@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compares rows of a filter that starts in full motion with rows of one that has always run.
 #include "estimator/identify/regressors/unknown_past.h"
 

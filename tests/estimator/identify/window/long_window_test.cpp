@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tests values from minutes of weak motion, in which ordinary windows have none.
 #include "estimator/identify/window/long_window.h"
 

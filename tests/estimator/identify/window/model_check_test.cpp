@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "estimator/identify/window/model_check.h"
 
 #include <cmath>

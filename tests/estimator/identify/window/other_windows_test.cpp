@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tests windows of other lengths than the main one, held values, named reasons, and the effect of a
 // failing sensor.
 #include <algorithm>
