@@ -61,6 +61,8 @@ std::string default_in_field(const Option& option) {
 
 }  // namespace
 
+namespace fields_detail {
+
 void place_files(std::string_view section, const void* owner, std::string_view directory,
                  void* settings) {
   for (const Option& o : options()) {
@@ -75,6 +77,8 @@ void take_reloadable(std::string_view section, const void* owner, const void* fr
     if (o.section == section && o.target.owner == owner && o.reload && *o.reload != Reach::restart)
       o.target.copy(from, to);
 }
+
+}  // namespace fields_detail
 
 std::span<const Option> options() {
   static const std::vector<Option> kAll = [] {
