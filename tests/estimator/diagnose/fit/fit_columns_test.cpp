@@ -178,8 +178,8 @@ TEST(RunColumns, WhatMovesARunIsAlongItsLaws) {
 
 /// With derivatives through the run, the equations change as their run does.
 TEST(RunColumns, AreTheDerivativesOfTheRun) {
-  constexpr double kTolerance = 0.02;
-  constexpr double kDifference = 1e-3;  // of a stiffness, of its design
+  constexpr double kMaxMiss = 0.02;
+  constexpr double kStep = 1e-3;  // of a stiffness, of its design
   const Case c;
   const RecordSegment segment =
       c.small.segments({test::exact_record(c.small, {c.twins.simulated}, 1)}).front();
@@ -198,16 +198,16 @@ TEST(RunColumns, AreTheDerivativesOfTheRun) {
     const Columns columns = columns_of(c.plant, c.model, segment, 0, at, all, ratio, through_run);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!moves_run(c.plant, c.model, all[i])) continue;
-      const double change = all[i].kind == Kind::theta ? kDifference : 1;
+      const double change = all[i].kind == Kind::theta ? kStep : 1;
       const VectorXd expected =
           (residual(all[i], change) - residual(all[i], -change)) / (2 * change);
       const double miss =
           (whole_column(c.plant, at, columns, static_cast<Index>(i)) - expected).norm() /
           expected.norm();
       if (through_run)
-        EXPECT_LT(miss, kTolerance) << i;
+        EXPECT_LT(miss, kMaxMiss) << i;
       else
-        EXPECT_GT(miss, kTolerance) << i;
+        EXPECT_GT(miss, kMaxMiss) << i;
     }
   }
 }
