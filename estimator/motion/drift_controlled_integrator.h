@@ -20,8 +20,8 @@ struct HighPass {
 /// axis a high-pass against drift, then p, p' and p'' by one triple of short filters. The
 /// oscillator section of each row (OscillatorSection, applied by RegressorFilter at the row's
 /// corner) turns them into displacement, velocity and acceleration. All three pass the same
-/// filters, so the equation of motion still holds between them. docs/equations.md, the
-/// drift-controlled integrator.
+/// filters, so the equation of motion still holds between them.
+/// docs/equations.md, the drift-controlled integrator.
 ///
 /// An axis without a value is invalid until its filters have been refilled.
 class DriftControlledIntegrator {

@@ -18,8 +18,8 @@ struct SvdDenoising {
 /// Removes noise from one channel of a record, in segments of segment_rows() samples. The last
 /// segment ends with the record; samples that two segments share are taken from the earlier one.
 /// The channel needs at least segment_rows() samples, all finite. Serves for comparison with the
-/// paper; the matched rows do not need it (docs/accuracy.md). Source: docs/equations.md, removal of
-/// noise; P1 (22)-(27).
+/// paper; the matched rows do not need it (docs/accuracy.md).
+/// Source: docs/equations.md, removal of noise; P1 (22)-(27).
 Eigen::VectorXd svd_denoised(const Eigen::VectorXd& samples, const SvdDenoising& denoising = {});
 
 }  // namespace framewatch::estimator

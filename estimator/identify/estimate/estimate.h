@@ -97,8 +97,8 @@ enum class FitWord {
 
 /// How well the model describes the measurement. A parameter's errors are relative, one standard
 /// deviation. They are constant while the building does not change, so they are not part of a
-/// change. They remain valid while no window shows the parameter (docs/equations.md, errors of the
-/// model).
+/// change. They remain valid while no window shows the parameter
+/// (docs/equations.md, errors of the model).
 struct ModelFit {
   static constexpr double kOnlyChanges = 0.15, kNothing = 0.3;  ///< misfits above which
 

@@ -54,8 +54,9 @@ struct InnerChain {
 
 /// The equations of motion of the measured floors, for parameters x times the design: the residual
 /// rows r = P That' (s^2 M + s C + K) That a_B with the inner floors driven by the measured ones,
-/// and their derivatives. Rows are projected on each floor's own modes. docs/equations.md, groups
-/// of stories; source: Koh, See and Balendra, Earthq. Eng. Struct. Dyn. 20 (1991), 1169.
+/// and their derivatives. Rows are projected on each floor's own modes.
+/// docs/equations.md, groups of stories; source: Koh, See and Balendra, Earthq. Eng. Struct. Dyn.
+/// 20 (1991), 1169.
 struct GroupEquations {
   int rows = 0;
   std::vector<double> frequency_hz;               ///< by row: of its floor with neighbors held
