@@ -180,7 +180,7 @@ bool Outbox::has_news() {
   return !s.row() || s.integer(0) != version_;
 }
 
-std::string Outbox::look(SentStore& sent, Waiting& out) {
+std::string Outbox::collect(SentStore& sent, Waiting& out) {
   if (std::string problem = open(); !problem.empty()) return problem;
   SqliteStatement version = file_.prepare("PRAGMA data_version");
   const std::int64_t version_now = version.row() ? version.integer(0) : -1;
@@ -190,14 +190,14 @@ std::string Outbox::look(SentStore& sent, Waiting& out) {
   newest.again();
 
   Waiting found;
-  look_for_events(sent, found);
+  collect_events(sent, found);
   if (newest_us_) {
     const bool alone = summary_s_.size() == 1;
     for (std::size_t i = alone ? 0 : 1; i < summary_s_.size(); ++i)
-      look_for_periods(sent, summary_s_[i], kEver, found);
+      collect_periods(sent, summary_s_[i], kEver, found);
     if (!alone)
       for (const TimeRange& time : wanted_minutes(sent))
-        look_for_periods(sent, summary_s_.front(), time, found);
+        collect_periods(sent, summary_s_.front(), time, found);
   }
   if (file_.failed()) return file_.error();
   if (sent.file().failed()) return sent.error();
@@ -213,7 +213,7 @@ std::string Outbox::look(SentStore& sent, Waiting& out) {
 }
 
 /// Compares both tables in the order of their keys.
-void Outbox::look_for_events(SentStore& sent, Waiting& out) {
+void Outbox::collect_events(SentStore& sent, Waiting& out) {
   SqliteStatement all = file_.prepare(
       "SELECT kind, id, time_us, state FROM event"
       " ORDER BY kind, id, time_us, state");
@@ -246,8 +246,8 @@ void Outbox::look_for_events(SentStore& sent, Waiting& out) {
 
 /// Finds closed periods. A period is closed when a later window is stored. If it grows afterwards,
 /// because the sensors' clock was set back, it is sent again.
-void Outbox::look_for_periods(SentStore& sent, std::int64_t period_s, const TimeRange& time,
-                              Waiting& out) {
+void Outbox::collect_periods(SentStore& sent, std::int64_t period_s, const TimeRange& time,
+                             Waiting& out) {
   constexpr const char* kRange = " WHERE period_s = ? AND start_us >= ? AND start_us < ?";
   SqliteStatement all = file_.prepare(std::string("SELECT start_us, windows, open FROM period") +
                                       kRange + " ORDER BY start_us DESC");

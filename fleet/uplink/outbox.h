@@ -40,19 +40,18 @@ class Outbox {
   Outbox(std::string directory, std::vector<std::int64_t> summary_s)
       : directory_(std::move(directory)), summary_s_(std::move(summary_s)) {}
 
-  /// Returns true if the history may have changed since the last look().
+  /// Returns true if the history may have changed since the last collect().
   bool has_news();
   /// Collects what waits. Returns an empty text, or the problem; then `out` is unchanged.
-  std::string look(SentStore& sent, Waiting& out);
+  std::string collect(SentStore& sent, Waiting& out);
   /// Returns the sensor time at which the newest window ended; nullopt before the first.
   std::optional<std::int64_t> newest_us() const { return newest_us_; }
   daemon::SqliteFile& history() { return file_; }
 
  private:
   std::string open();
-  void look_for_events(SentStore& sent, Waiting& out);
-  void look_for_periods(SentStore& sent, std::int64_t period_s, const TimeRange& time,
-                        Waiting& out);
+  void collect_events(SentStore& sent, Waiting& out);
+  void collect_periods(SentStore& sent, std::int64_t period_s, const TimeRange& time, Waiting& out);
   std::vector<TimeRange> wanted_minutes(SentStore& sent);
 
   std::string directory_;

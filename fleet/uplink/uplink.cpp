@@ -69,7 +69,7 @@ void Uplink::step(Instant now) {
   if (!store_.is_open()) store(now, false);
   hear_link(now);
   store(now, false);
-  look(now);
+  collect(now);
   say_inventory(now);
   say_config();
   fill(now);
@@ -165,14 +165,14 @@ void Uplink::store(Instant now, bool at_once) {
   if (rewind_) begin_connection();
 }
 
-void Uplink::look(Instant now) {
+void Uplink::collect(Instant now) {
   if (!store_.is_open() || !unstored_keys_.empty() || rewind_ || now.steady_us < look_us_) return;
   const bool used_up =
       next_event_ >= waiting_.events.size() && next_period_ >= waiting_.periods.size();
   const bool more = waiting_.event_count > 0 || waiting_.period_count > 0;
   look_us_ = now.steady_us + kLook_us;
   if (!look_again_ && !(used_up && more && window_.messages() == 0) && !outbox_.has_news()) return;
-  outbox_trouble_ = outbox_.look(store_, waiting_);
+  outbox_trouble_ = outbox_.collect(store_, waiting_);
   if (!outbox_trouble_.empty()) return;
   next_event_ = next_period_ = 0;
   look_again_ = false;

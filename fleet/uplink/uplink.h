@@ -70,7 +70,7 @@ class Uplink {
   void note_acknowledged(const Outgoing& done, bool duplicate);
   void begin_connection();
   void store(Instant now, bool at_once);
-  void look(Instant now);
+  void collect(Instant now);
   void say_inventory(Instant now);
   void say_config();
   void fill(Instant now);
@@ -99,7 +99,7 @@ class Uplink {
   std::int64_t clock_us_;  ///< clock of acknowledgements at the start; never goes back
 
   std::deque<event_t> live_;  ///< events from LCM that are not yet under way
-  Waiting waiting_;           ///< result of the newest look()
+  Waiting waiting_;           ///< result of the newest collect()
   std::size_t next_event_ = 0, next_period_ = 0;
   bool look_again_ = true, rewind_ = false;
   std::string again_;  ///< newest resend command; seals keys anew, else all would be duplicates

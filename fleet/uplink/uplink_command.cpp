@@ -75,7 +75,7 @@ std::string state_text(const uplink_status_t& s) {
 /// Logs one line when the connection is made and when it is lost.
 class ConnectionLog {
  public:
-  void look(const uplink_status_t& s, bool quiet) {
+  void update(const uplink_status_t& s, bool quiet) {
     const bool connected = s.connected != 0;
     if (connected == connected_ && said_) return;
     if (connected && !quiet) daemon::log(daemon::LogLevel::info, "the hub is connected");
@@ -125,7 +125,7 @@ int work(const Config& config, const UplinkArguments& a, NatsLink& link,
       const std::vector<std::uint8_t> bytes = drivers::encoded(status);
       lcm.publish(prefix + "UPLINK", bytes.data(), static_cast<unsigned>(bytes.size()));
       manager.status(state_text(status));
-      connection.look(status, a.quiet);
+      connection.update(status, a.quiet);
       manager.alive(at.steady_us);
     });
     if (!thrown.empty()) failures(at.steady_us, thrown);

@@ -118,7 +118,7 @@ void Estimation::begin_shaking() {
   counted_before_.resize(config_.pipeline.axes.size());
 }
 
-void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
+void Estimation::follow_shaking(const estimator::SampleSet& instant) {
   if (!shaking_) return;
   const bool ended = shaking_->push(instant, baseline());
   if (shaking_->began()) {
@@ -152,8 +152,8 @@ void Estimation::take(estimator::Pipeline::Results&& results) {
   for (const estimator::PipelineResult& result : results) {
     if (result.instant != nullptr) {
       if (watch_) strong_.push(*result.instant);
-      look_for_gap(*result.instant);
-      look_for_shaking(*result.instant);
+      compare_gap(*result.instant);
+      follow_shaking(*result.instant);
       listener_->on_instant(*result.instant);
     }
     if (result.estimate != nullptr) main_window(*result.estimate);
@@ -181,7 +181,7 @@ void Estimation::late_window(const estimator::WindowEstimate& estimate) {
   if (shaking_) shaking_->push(estimate);
 }
 
-void Estimation::look_for_gap(const estimator::SampleSet& instant) {
+void Estimation::compare_gap(const estimator::SampleSet& instant) {
   if (!gap_) return;
   const estimator::GapWindow* window = gap_->push(instant, noise_density_);
   if (window == nullptr) return;

@@ -171,8 +171,8 @@ class Estimation {
   /// Returns true if the change of this parameter began with the strong motion of its recovery law.
   bool is_recovering(const event_t& event, int parameter) const;
   event_t with_recovery(event_t event, int parameter) const;
-  void look_for_gap(const estimator::SampleSet& instant);
-  void look_for_shaking(const estimator::SampleSet& instant);
+  void compare_gap(const estimator::SampleSet& instant);
+  void follow_shaking(const estimator::SampleSet& instant);
   void begin_shaking();
   void add_records(EventReport& report) const;
   void begin_watch();

@@ -176,7 +176,7 @@ void LiveView::estimate(int window, const window_estimate_t& found) {
   if (found.window_end_us > drivers::kLatestTime_us ||
       found.window_end_us < -drivers::kLatestTime_us)
     return;
-  look_for_changes(window, found);
+  detect_changes(window, found);
   if (window != 0) return;
   new_estimate_ = true;
   estimate_at_ = flushes_;
@@ -200,7 +200,7 @@ void LiveView::other_estimate(const std::string& channel, std::span<const std::u
   late_rows_ = history_.late(*found) || late_rows_;
 }
 
-void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
+void LiveView::detect_changes(int window, const window_estimate_t& estimate) {
   if (!watch_) return;
   bool renew = false;
   {

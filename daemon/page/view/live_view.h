@@ -73,7 +73,7 @@ class LiveView {
   void parameters(const parameter_table_t& table);
   void estimate(int window, const window_estimate_t& estimate);
   void other_estimate(const std::string& channel, std::span<const std::uint8_t> payload);
-  void look_for_changes(int window, const window_estimate_t& estimate);
+  void detect_changes(int window, const window_estimate_t& estimate);
   /// Returns true for a change of stiffness that the page found, as it does without [watch].
   bool found_here(const event_t& event) const;
   void keep(const std::string& name, std::string json);

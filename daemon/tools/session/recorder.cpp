@@ -109,8 +109,8 @@ void Recorder::keep(const estimator::SampleSet& set) {
   newest_us_ = to_microseconds(set.time);
   const std::vector<double>& distance = rest_.push(set);
   check_.push(set);
-  if (state_ == RecorderState::tapping) look_for_tap(distance);
-  if (state_ == RecorderState::armed) look_for_trigger(distance);
+  if (state_ == RecorderState::tapping) detect_tap(distance);
+  if (state_ == RecorderState::armed) detect_trigger(distance);
   if (state_ == RecorderState::recording) {
     if (session_.trigger_us == 0) session_.trigger_us = newest_us_;
     const double length_s = session_.request.length_s;
@@ -124,7 +124,7 @@ void Recorder::keep(const estimator::SampleSet& set) {
   }
 }
 
-void Recorder::look_for_tap(const std::vector<double>& distance) {
+void Recorder::detect_tap(const std::vector<double>& distance) {
   std::vector<double> threshold;
   for (const ChannelResult& r : check_results_)
     threshold.push_back(std::max(kTapOverRest * r.rms, kMinTap_mps2));
@@ -143,7 +143,7 @@ void Recorder::look_for_tap(const std::vector<double>& distance) {
   if (left == 0) state_ = RecorderState::waiting;
 }
 
-void Recorder::look_for_trigger(const std::vector<double>& distance) {
+void Recorder::detect_trigger(const std::vector<double>& distance) {
   for (const std::size_t a : trigger_axes_) {
     if (!(std::abs(distance[a]) > session_.request.trigger_mps2)) continue;
     const std::string problem = open(now_us_, config_.pipeline.axes[a].name);

@@ -69,8 +69,8 @@ class Recorder {
   void store(KeptMessage message);
   void sample(const estimator::AccelSample& sample);
   void keep(const estimator::SampleSet& set);
-  void look_for_tap(const std::vector<double>& distance);
-  void look_for_trigger(const std::vector<double>& distance);
+  void detect_tap(const std::vector<double>& distance);
+  void detect_trigger(const std::vector<double>& distance);
   std::string open(std::int64_t now_us, const std::string& triggered_by);
   void close();
   void check_disk(std::int64_t now_us);
