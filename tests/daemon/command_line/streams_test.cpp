@@ -123,7 +123,7 @@ TEST_F(Streams, FramesOfARunThatWasCutOffAreKept) {
          std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(run.stop(SIGINT), 0);
-  EXPECT_NE(read("said").find("they are in frames.cut-off-1"), std::string::npos) << read("said");
+  EXPECT_NE(read("said").find("kept them in frames.cut-off-1"), std::string::npos) << read("said");
   EXPECT_EQ(read("frames.cut-off-1"), "(1.0) can0 123#00\n");
   EXPECT_EQ(read("frames"), "");
 }

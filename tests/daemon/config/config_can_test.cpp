@@ -69,7 +69,8 @@ TEST(ConfigCan, TellsEveryProblemAtItsPlace) {
   expect(problems_of(kX, kBus + kNode + "delay_s = 0.001\n"), "delay_s:");
   expect(problems_of(kX, kBus + kNode + "id_offset = 2000\n"), "id_offset: id 950 of Accel");
   expect(problems_of(kX, kBus + kNode + "j1939 = true\n"), "j1939: Accel has an 11-bit id");
-  expect(problems_of(kX, kBus + kNode + "samples_per_frame = 2\n"), "# is missing");
+  expect(problems_of(kX, kBus + kNode + "samples_per_frame = 2\n"),
+         "write # in place of the sample's number");
   expect(problems_of(R"({ can = "can0", dbc_signal = "Big.X_0" })", kBus),
          "Big has 64 bytes: fd = true is missing for can0");
   expect(problems_of(kX, test::replaced(kBus, "n.dbc", "none.dbc")), "none.dbc: ");

@@ -126,7 +126,7 @@ TEST_F(Miniseed, ColumnsAndNamesChooseAndNameChannels) {
   const std::string both = miniseed(a) + miniseed(b);
   auto record = read(both);
   expect_said(record,
-              "XX.TEST.01.HN1 has 100 Hz, XX.TEST.01.LN1 has 10 Hz: take those of one rate");
+              "XX.TEST.01.HN1 has 100 Hz, XX.TEST.01.LN1 has 10 Hz: select those of one rate");
   options_.columns = {"XX.TEST.01.HN1"};
   options_.names = {"roof"};
   record = read(both);

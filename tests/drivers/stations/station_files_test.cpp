@@ -118,8 +118,8 @@ TEST_F(StationFile, OfCosmosWithAPeakThatIsNotItsValuesSaysSo) {
 
 TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
   const std::string good = cosmos();
-  expect_refused(replaced(good, "with 5 text", "with many text"), 1, "lines of text");
-  expect_refused(replaced(good, "100 Integer", "10 Integer"), 6, "76 at least");
+  expect_refused(replaced(good, "with 5 text", "with many text"), 1, "text lines");
+  expect_refused(replaced(good, "100 Integer", "10 Integer"), 6, "at least 76");
   expect_refused(replaced(good, "(5F15.6)", "(free)"), 17, "a format such as");
   expect_refused(replaced(good, "    2018", "    20x8"), 10, "not a finite number");
   expect_refused(good.substr(0, 600), -1, "nteger-header values: ");
@@ -131,8 +131,8 @@ TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
   CosmosChannel raw{1, 50};
   expect_refused(replaced(cosmos(raw), "         1.2553", "    -999.000000"), 1, "volts per g");
   expect_refused(good + good, 0, "appears twice");
-  expect_refused(replaced(good, "      11", "     257"), 1, "no time");
-  expect_refused(replaced(good, "    2018", "   67554"), 1, "no time");
+  expect_refused(replaced(good, "      11", "     257"), 1, "not a valid time");
+  expect_refused(replaced(good, "    2018", "   67554"), 1, "not a valid time");
   expect_refused(replaced(good, "8040.HNE", "8040.H,E"), 0, "must not contain");
   RecordOptions zone;
   zone.zone_min = -540;
@@ -163,13 +163,13 @@ TEST_F(StationFile, OfSmcThatIsDamagedIsRefused) {
   expect_refused(smc({{16, "10"}}), 30, "9 of 10 numbers");
   expect_refused(smc({{16, "-1"}}), 14, "number of values");
   expect_refused(smc({{15, "2"}}), 29, "1 of 2 comment lines");
-  expect_refused(smc({{2, "400"}}), 12, "no time");
-  expect_refused(smc({{1, "1995"}, {2, "366"}}), 12, "no time");
+  expect_refused(smc({{2, "400"}}), 12, "not a valid time");
+  expect_refused(smc({{1, "1995"}, {2, "366"}}), 12, "not a valid time");
   RecordOptions forced;
   forced.format = RecordFormat::smc;
   expect_refused(replaced(smc(), "2 CORRECTED ACCELEROGRAM", ""), 1, "neither", forced);
   expect_refused(replaced(smc(), "2 CORRECTED ACCELEROGRAM", "3 VELOCITY"), 1, "neither", forced);
-  expect_refused(replaced(smc(), "0.2000000E+03", "0.0000000E+00"), 18, "samples a second");
+  expect_refused(replaced(smc(), "0.2000000E+03", "0.0000000E+00"), 18, "samples per second");
   expect_refused(replaced(smc(), " .4000E+01", " .4zzzE+01"), 29, "not a finite number");
 }
 
@@ -191,11 +191,11 @@ TEST_F(StationFile, OfKnetIsReadWithItsHeader) {
 TEST_F(StationFile, OfKnetThatIsDamagedIsRefused) {
   expect_refused(knet().substr(0, 200), 0, "17 lines");
   expect_refused(replaced(knet(), "Station Code", "Station Cod_"), 0, "no Station Code");
-  expect_refused(replaced(knet(), "E-W", "7"), 13, "none of");
+  expect_refused(replaced(knet(), "E-W", "7"), 13, "must be N-S");
   expect_refused(replaced(knet(), "(gal)", "(g)"), 14, "3920(gal)");
   expect_refused(replaced(knet(), "/6182761", "/0"), 14, "3920(gal)");
   expect_refused(replaced(knet(), "100Hz", "0Hz"), 11, "rate");
-  expect_refused(replaced(knet(), "02:29:21", "02:29"), 10, "no time");
+  expect_refused(replaced(knet(), "02:29:21", "02:29"), 10, "not a time");
   expect_refused(replaced(knet(), "22651", "2265x"), 18, "whole number");
 }
 
@@ -226,7 +226,7 @@ TEST_F(StationFile, OfSacThatIsDamagedOrNoAccelerationIsRefused) {
     expect_refused(text, 0, rule, declared(1));
   };
   refused(sac().substr(0, 640), "3 values");
-  refused(sac(false, {{86, 7}}), "velocity");
+  refused(sac(false, {{86, 7}}), "velocities");
   refused(sac(false, {{85, 2}}), "spectrum");
   refused(sac(false, {{105, 0}}), "uneven");
   refused(sac(false, {{71, 0}}), "not a valid time");

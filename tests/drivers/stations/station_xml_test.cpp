@@ -161,7 +161,7 @@ TEST_F(StationXml, ThatIsDamagedIsRefused) {
   ASSERT_TRUE(parse(good));
   expect_refused(good.substr(0, good.size() - 20), 23, "is not XML");
   expect_refused("", 1, "is not XML");
-  expect_refused("<html><body/></html>", 1, "its root is \"html\"");
+  expect_refused("<html><body/></html>", 1, "its root element is \"html\"");
   expect_refused("<FDSNStationXML/>", 0, "has no channel");
   XmlChannel c;
   c.azimuth = "north";

@@ -106,7 +106,7 @@ TEST(EffectProblems, NameTheKeyAndTheRule) {
   EXPECT_NE(first_problem(slips).find("softening: must not be below 0"), std::string::npos);
   Effect wrong = test::example_effect(cubic_stiffness, m);
   wrong.place.kind = PlaceKind::channel;
-  EXPECT_NE(first_problem(wrong).find("no such place"), std::string::npos);
+  EXPECT_NE(first_problem(wrong).find("cannot be at this kind of place"), std::string::npos);
   Effect short_of_values = test::example_effect(bouc_wen, m);
   short_of_values.values.pop_back();
   EXPECT_NE(first_problem(short_of_values).find("needs 7 values"), std::string::npos);

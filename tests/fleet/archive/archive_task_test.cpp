@@ -46,7 +46,7 @@ TEST(ArchiveTask, EveryLineThatIsNoTaskIsRefusedWithTheRule) {
       {"99999999999\t" + kKey + "\tc\to" + times + "\tlog", "is not the number of a task"},
       {"1\tkey\tc\to" + times + "\tlog", "key: is not a key"},
       {"1\t0123456789AB-00112233ffff-deadbeef0000\tc\to" + times + "\tlog", "is not a key"},
-      {"1\t" + kKey + "\tc\to\t0\t0\tsoon\tlog", "soon: is no time"},
+      {"1\t" + kKey + "\tc\to\t0\t0\tsoon\tlog", "soon: is not a time"},
       {"1\t" + kKey + "\tc\to\t1\t0\t2\tlog", "in the order warm-up"},
       {"1\t" + kKey + "\tc\to\t0\t2\t2\tlog", "in the order warm-up"},
       {"1\t" + kKey + "\t\to" + times + "\tlog", "a name is empty"}};

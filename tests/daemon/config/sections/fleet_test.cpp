@@ -59,7 +59,7 @@ TEST(FleetSection, WhatIsWrongIsSaidAtItsLine) {
 TEST(FleetSection, TakesAHistory) {
   const std::string told =
       problems_of(test::replaced(kFleet, "[history]\ndirectory = \"h\"\n", ""));
-  EXPECT_NE(told.find("needs a section [history]"), std::string::npos) << told;
+  EXPECT_NE(told.find("needs [history]"), std::string::npos) << told;
 }
 
 }  // namespace fleet_test

@@ -127,7 +127,7 @@ TEST_F(StateFile, DamagedCutOffAndForeignOnesAreRefusedWithTheReason) {
   for (const auto& [at, problem] :
        std::map<std::size_t, std::string>{{good.size() / 3, "section window is damaged"},
                                           {good.size() - 1, "section window is damaged"},
-                                          {100, "the digest of its head is another"}}) {
+                                          {100, "the digest of its head does not match"}}) {
     std::string bad = good;
     bad[at] ^= 1;
     write_file(path("state"), bad);

@@ -82,7 +82,7 @@ TEST(Health, SaysThatTheThermometerIsSilent) {
   h.watch->temperature_degc = std::nan("");
   EXPECT_EQ(odd(h, config), "0 oddities");
   config.watch->temperature_channel = "ROOF";
-  EXPECT_EQ(odd(h, config), "no temperature is heard on ROOF");
+  EXPECT_EQ(odd(h, config), "no temperature on ROOF");
   h.watch->temperature_degc = 4;
   EXPECT_EQ(odd(h, config), "0 oddities");
 }
@@ -93,7 +93,7 @@ TEST(Health, SaysThatTheHubIsSilent) {
   EXPECT_EQ(odd(h, config), "0 oddities");
   config.fleet.emplace();
   EXPECT_EQ(odd(h, config),
-            "nothing is heard of framewatch uplink: systemctl status framewatch-uplink");
+            "framewatch uplink does not report: systemctl status framewatch-uplink");
   h.uplink.emplace();
   h.uplink->started_us = kNow_us - 8 * 3600 * kSecond_us;
   h.uplink->acknowledged_us = kNow_us - 3500 * kSecond_us;

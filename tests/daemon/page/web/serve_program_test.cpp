@@ -18,7 +18,7 @@ TEST(ServeProgram, SaysWhenItMayNotOpenEnoughFiles) {
       {"/bin/sh", "-c", "ulimit -n 600 && exec \"$0\" serve \"$1\" --port 0 >\"$2\" 2>&1",
        FRAMEWATCH_PROGRAM, FRAMEWATCH_SOURCE_DIR "/configs/table_two_story.toml", said});
   EXPECT_EQ(serve.wait(), 2);
-  EXPECT_NE(test::read_file(said).find("may open 600: raise ulimit -n"), std::string::npos)
+  EXPECT_NE(test::read_file(said).find("may open only 600: raise ulimit -n"), std::string::npos)
       << test::read_file(said);
 }
 

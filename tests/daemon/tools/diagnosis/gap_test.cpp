@@ -215,7 +215,7 @@ TEST_F(GapLoop, RefusesWhatIsNoModelOfTheBuilding) {
     EXPECT_FALSE(std::filesystem::exists(path("adopted.toml")));
     return testing::internal::GetCapturedStderr();
   };
-  EXPECT_NE(refused(building).find("has no [structure.design]"), std::string::npos);
+  EXPECT_NE(refused(building).find("[structure.design] is missing"), std::string::npos);
   EXPECT_NE(refused("[structure]\nstories = 2\n").find("model.toml:1"), std::string::npos);
   std::string other = building + "\n[structure.design]\nkx_npm = [[28e3], [26e3]]\n";
   other.replace(other.find("name = \"F2\""), 11, "name = \"F3\"");

@@ -149,7 +149,7 @@ TEST_F(RawLogReplay, WhatTheSensorDidNotSayIsNoValue) {
 TEST_F(RawLogReplay, WithoutItsTableItIsRefused) {
   expect_refused(
       changed([](drivers::LogEvent& e) { return e.channel != drivers::kCountsTableChannel; }),
-      "the first: COUNTS: no table of its channels before it");
+      "the first: COUNTS: no channel table before it");
 }
 
 TEST_F(RawLogReplay, OfOtherChannelsItIsRefusedWithTheirNames) {

@@ -68,7 +68,7 @@ TEST_F(ReplayRefusal, RefusesWrongFingerprints) {
     if (event.channel == "ACCEL") event.data[2] ^= 0x10;
     return true;
   });
-  expect_refused(path("wrong"), "no accel_t");
+  expect_refused(path("wrong"), "not the accel_t");
 }
 
 TEST_F(ReplayRefusal, RefusesAnotherSamplingRateNamingBoth) {

@@ -63,7 +63,7 @@ TEST(SessionDesk, ADatagramIsCountedAndObeyedWhereTheConfigurationSaysSo) {
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_EQ(desk.not_obeyed(), 1000);
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
-  EXPECT_NE(said.find("lcm.commands = false"), std::string::npos) << said;
+  EXPECT_NE(said.find("set lcm.commands = true"), std::string::npos) << said;
   EXPECT_EQ(b.recorder.state(), RecorderState::waiting);
   b.config.lcm.commands = true;
   desk.heard(start.data(), 7, 5);
