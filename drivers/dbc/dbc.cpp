@@ -269,9 +269,9 @@ class Parser {
     m.extended = (*id & kExtendedFlag) != 0;
     m.id = static_cast<std::uint32_t>(*id) & ~kExtendedFlag;
     if (*id > 0xFFFFFFFFu || m.id > (m.extended ? 0x1FFFFFFFu : 0x7FFu)) {
-      problems_.add(
-          m.line, fmt::format("id {} of {} is not a {}-bit id{}", *id, m.name, m.extended ? 29 : 11,
-                              m.extended ? "" : "; a 29-bit one has bit 31 set"));
+      problems_.add(m.line, fmt::format("id {} of {} is not a valid {}-bit id{}", *id, m.name,
+                                        m.extended ? 29 : 11,
+                                        m.extended ? "" : "; a 29-bit one has bit 31 set"));
       return;
     }
     m.length = *length > 64 ? 65 : static_cast<int>(*length);

@@ -118,7 +118,7 @@ TEST(Dbc, TellsEveryBrokenRuleAtItsLine) {
   contains(bad(replaced(kGood, "32|32@1-", "32|16@1-")), "is floating and has 16 bits, not 32");
   contains(bad(replaced(kGood, "BO_ 52", "BO_ 1409")), "Xsens has the id of Raw (line 12)");
   contains(bad(replaced(kGood, " Xsens:", " Raw:")), "Raw is the name of another message");
-  contains(bad(replaced(kGood, "BO_ 52", "BO_ 2048")), "2048 of Xsens is not a 11-bit id");
+  contains(bad(replaced(kGood, "BO_ 52", "BO_ 2048")), "2048 of Xsens is not a valid 11-bit id");
   contains(bad(replaced(kGood, "Raw: 8", "Raw: 9")), "no CAN frame has 9 bytes");
   contains(bad(replaced(kGood, "AccY", "AccX")), "Raw has signal AccX already (line 13)");
   contains(bad(replaced(kGood, "BO_ 52", "B0_ 52")), "unknown statement B0_");
