@@ -149,7 +149,9 @@ TEST_F(Mat, ColumnsTakesAWholeMatrixOrALineOfIt) {
       .add("acc", joined(values(1), values(2)), kSamples, 2)
       .add_column("load", values(7))
       .add_column("spectrum", {1, 2, 3});
-  expect_said(read(), "there are 500 times, and variables of other lengths: name the channels with --columns");
+  expect_said(
+      read(),
+      "there are 500 times, and variables of other lengths: name the channels with --columns");
   options_.columns = {"acc"};
   expect_channels({"acc.1", "acc.2"});
   expect_said(read(), "\"spectrum\": not one of --columns, left out");
@@ -194,7 +196,9 @@ TEST_F(Mat, WhatIsNoRealNumberIsSaid) {
       .add_column("t", times())
       .add_column("a", values(1))
       .add_complex("z", values(1));
-  expect_said(read(), "\"z\": 500 x 1 complex double cannot be a channel: name the channels with --columns");
+  expect_said(
+      read(),
+      "\"z\": 500 x 1 complex double cannot be a channel: name the channels with --columns");
   options_.columns = {"a"};
   expect_channels({"a"});
   expect_said(read(), "\"z\": 500 x 1 complex double, left out");
