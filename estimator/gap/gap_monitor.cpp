@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/story_groups.h"
 
@@ -59,8 +59,7 @@ GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxi
     : structure_(config.structure),
       stories_(structure_),
       table_(config.parameters()),
-      design_{config.design.size() > 0 ? config.design : guessed_design(structure_, stories_),
-              config.bending_nmprad},
+      design_(story_design(config)),
       axes_(axes),
       driving_(axes_, config.options.rate_hz),
       inputs_(measured_inputs(structure_, axes_, driving_.present())),

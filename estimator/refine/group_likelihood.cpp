@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "estimator/identify/elements/deformations.h"
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/identify/groups/group_equations.h"
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/eigenvalues.h"
@@ -104,9 +104,7 @@ MatrixXd momenta_within(const MeasuredGroups& groups, double high_hz) {
 MeasuredGroups measured_groups(const PipelineConfig& c) {
   MeasuredGroups out;
   const ParameterTable table = c.parameters();
-  const GroupDesign design{
-      c.design.size() > 0 ? c.design : guessed_design(c.structure, ParameterTable(c.structure)),
-      c.bending_nmprad};
+  const GroupDesign design = story_design(c);
   out.designed = group_parameters(c.structure, table, design);
   out.building = reduced_building(c.structure, c.axes, table, design, identifying(c.axes));
   for (const MatrixXd& part : out.building.parts) {

@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/identify/groups/group_equations.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/structure/natural_frequencies.h"
@@ -23,7 +24,7 @@ constexpr double kUnknownSlow = 0.5;
 /// Returns the identified parameters, and those of the design where nothing was identified.
 VectorXd completed(const PipelineConfig& c, const ParameterTable& table,
                    const DriftKnowledge& known) {
-  const GroupDesign design = group_design_of(c);
+  const GroupDesign design = story_design(c);
   VectorXd out =
       table.grouped() ? group_parameters(c.structure, table, design) : VectorXd(design.theta);
   for (std::size_t p = 0; p < known.theta.size() && static_cast<Index>(p) < out.size(); ++p)
@@ -38,7 +39,7 @@ MatrixXd frames_by_axes(const PipelineConfig& c, const ParameterTable& table,
   const Structure& s = c.structure;
   const auto axes = static_cast<Index>(c.axes.size());
   if (table.grouped()) {
-    const GroupDesign design = group_design_of(c);
+    const GroupDesign design = story_design(c);
     const ReducedBuilding b = reduced_building(s, c.axes, table, design, identifying(c.axes), true);
     if (b.rows() == 0) return {};
     const VectorXd factor = theta.cwiseQuotient(group_parameters(s, table, design));
@@ -78,7 +79,7 @@ double removed_share(double frequency_hz, double corner_hz) {
 
 double lowest_hz(const PipelineConfig& c, const ParameterTable& table, const VectorXd& theta) {
   const VectorXd stories =
-      table.grouped() ? story_parameters(c.structure, table, group_design_of(c), theta) : theta;
+      table.grouped() ? story_parameters(c.structure, table, story_design(c), theta) : theta;
   return lowest_frequency_hz(c.structure, ParameterTable(c.structure), stories);
 }
 
@@ -121,7 +122,7 @@ double share_error(const PipelineConfig& c, const ParameterTable& table,
                       std::hypot(own_error(table, known, story, frame), followed));
   }
   const ParameterTable stories(s);
-  const VectorXd theta = group_design_of(c).theta;
+  const VectorXd theta = story_design(c).theta;
   double sum = 0;
   for (int i = below + 1; i <= above; ++i) sum += 1 / theta[stories.frame_stiffness(i, frame)];
   double squares = 0;

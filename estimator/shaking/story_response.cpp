@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/numeric/solve.h"
@@ -67,15 +67,10 @@ constexpr double kSettlePeriods = 2;  // of the corner
 
 }  // namespace
 
-GroupDesign group_design_of(const PipelineConfig& c) {
-  return {c.design.size() > 0 ? c.design : guessed_design(c.structure, ParameterTable(c.structure)),
-          c.bending_nmprad};
-}
-
 SlowDrift::SlowDrift(const PipelineConfig& config)
     : config_(config),
       table_(config.parameters()),
-      design_(group_design_of(config)),
+      design_(story_design(config)),
       designed_(table_.grouped() ? group_parameters(config.structure, table_, design_)
                                  : design_.theta),
       driven_(has_force(config.axes)),

@@ -22,9 +22,6 @@
 
 namespace framewatch::estimator {
 
-/// Returns the configured design; without one, a guess from the structure.
-GroupDesign group_design_of(const PipelineConfig& config);
-
 /// The knowledge of a building at the time its drift was computed. story_drifts() derives the
 /// errors of the drift from it.
 struct DriftKnowledge {

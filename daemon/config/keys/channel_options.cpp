@@ -205,7 +205,7 @@ const Option kOptions[] = {
      .unit = "m/s^2/sqrt(Hz)",
      .min = 0,
      .max = 1e3,
-     .meaning = "Noise density. 0: measured between 0.25 and 0.45 of the sampling rate.",
+     .meaning = "Noise density. 0: measured between 0.29 and 0.45 of the sampling rate.",
      .reload = window,
      .target = into<&estimator::SensorAxis::noise_density>},
 

@@ -17,7 +17,7 @@
 #include "daemon/tools/replay/replay_survey.h"
 #include "daemon/tools/replay/stored_samples.h"
 #include "drivers/lcm/accel_intake.h"
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/refine/max_likelihood.h"
 #include "estimator/structure/group_design.h"
 
@@ -65,11 +65,9 @@ RefinedSegment without_silent_channels(const estimator::PipelineConfig& config,
 
 /// Returns the design of the identified parameters, SI.
 Eigen::VectorXd design_of(const estimator::PipelineConfig& c) {
-  const estimator::ParameterTable table = c.parameters(), stories(c.structure);
-  const Eigen::VectorXd design =
-      c.design.size() > 0 ? c.design : guessed_design(c.structure, stories);
-  return table.grouped() ? group_parameters(c.structure, table, {design, c.bending_nmprad})
-                         : design;
+  const estimator::ParameterTable table = c.parameters();
+  const estimator::GroupDesign design = estimator::story_design(c);
+  return table.grouped() ? group_parameters(c.structure, table, design) : design.theta;
 }
 
 std::string json(const RefineArguments& a, const Config& config,

@@ -11,7 +11,7 @@
 #include "daemon/base/numbers.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/motion/noise_meter.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"
@@ -41,11 +41,7 @@ void choose_parameters(const Config& config, const SessionEstimates& estimates,
                        SessionFloors& out) {
   const estimator::PipelineConfig& c = config.pipeline;
   const estimator::ParameterTable table = c.parameters();
-  const Eigen::VectorXd design = group_parameters(
-      c.structure, table,
-      {c.design.size() > 0 ? c.design
-                           : guessed_design(c.structure, estimator::ParameterTable(c.structure)),
-       c.bending_nmprad});
+  const Eigen::VectorXd design = group_parameters(c.structure, table, estimator::story_design(c));
   out.theta.assign(design.begin(), design.end());
   out.identified.assign(out.theta.size(), 0);
   const WindowRange strong = windows_within(estimates, out.from_us, out.to_us);

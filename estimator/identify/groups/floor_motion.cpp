@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
@@ -19,10 +19,7 @@ using Matrix = Eigen::Map<const Eigen::MatrixXd>;
 FloorMotion::FloorMotion(const PipelineConfig& config)
     : config_(config),
       table_(config.parameters()),
-      design_{config.design.size() > 0
-                  ? config.design
-                  : guessed_design(config.structure, ParameterTable(config.structure)),
-              config.bending_nmprad},
+      design_(story_design(config)),
       designed_(group_parameters(config.structure, table_, design_)) {
   tune(designed_, identifying(config.axes));
 }

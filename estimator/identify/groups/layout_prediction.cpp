@@ -6,7 +6,7 @@
 #include <complex>
 #include <limits>
 
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/identify/groups/group_equations.h"
 #include "estimator/identify/groups/group_tuning.h"
 #include "estimator/identify/groups/reduced_building.h"
@@ -57,10 +57,7 @@ class Prediction {
       : config_(config),
         table_(config.parameters()),
         tolerance_(tolerance),
-        design_{config.design.size() > 0
-                    ? config.design
-                    : guessed_design(config.structure, ParameterTable(config.structure)),
-                config.bending_nmprad} {
+        design_(story_design(config)) {
     const std::vector<std::uint8_t> all = identifying(config.axes);
     building_ = reduced_building(config.structure, config.axes, table_, design_, all);
     const ReducedBuilding stories = reduced_building(

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "estimator/identify/elements/deformations.h"
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/numeric/nan.h"
@@ -22,15 +22,9 @@ std::size_t place_of(int count) {
   return static_cast<std::size_t>(count);
 }
 
-Eigen::VectorXd design_of(const PipelineConfig& config) {
-  return config.design.size() > 0
-             ? config.design
-             : guessed_design(config.structure, ParameterTable(config.structure));
-}
-
 double corner_hz(const PipelineConfig& config) {
-  const double lowest_hz =
-      lowest_frequency_hz(config.structure, ParameterTable(config.structure), design_of(config));
+  const double lowest_hz = lowest_frequency_hz(config.structure, ParameterTable(config.structure),
+                                               story_design(config).theta);
   return std::max(
       std::min(ElementDrift::kCorner * lowest_hz, kHighestCorner * config.options.rate_hz),
       config.options.high_pass_hz);
@@ -84,7 +78,7 @@ void ElementDrift::find_stories(const ParameterTable& table, const FloorLayout& 
 void ElementDrift::find_groups(const PipelineConfig& config, const ParameterTable& table) {
   const Structure& s = config.structure;
   const ReducedBuilding building =
-      reduced_building(s, config.axes, table, {design_of(config), config.bending_nmprad},
+      reduced_building(s, config.axes, table, {story_design(config).theta, config.bending_nmprad},
                        identifying(config.axes), true);
   const Eigen::MatrixXd frames = building.frames.leftCols(building.measured) * building.from_axes;
   for (int p = 0; p < table.elements(); ++p) {

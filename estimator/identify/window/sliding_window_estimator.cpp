@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/elements/story_design.h"
 #include "estimator/identify/groups/group_tuning.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/regressor_tuning.h"
@@ -86,15 +86,12 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
 std::unique_ptr<RowTuning> SlidingWindowEstimator::make_tuning(
     const EstimatorOptions& options) const {
   const Structure& structure = config_.structure;
-  const Eigen::VectorXd design = config_.design.size() > 0
-                                     ? config_.design
-                                     : guessed_design(structure, ParameterTable(structure));
+  const GroupDesign design = story_design(config_);
   if (layout_.grouped())
-    return std::make_unique<GroupTuning>(config_, options, table_, layout_,
-                                         GroupDesign{design, config_.bending_nmprad}, triple_,
+    return std::make_unique<GroupTuning>(config_, options, table_, layout_, design, triple_,
                                          high_pass_);
   return std::make_unique<RegressorTuning>(structure, layout_, *deformations_, options, triple_,
-                                           high_pass_, design);
+                                           high_pass_, design.theta);
 }
 
 std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
