@@ -91,7 +91,8 @@ bool is_of_fleet(std::string_view command) {
 
 /// Replaces this process by framewatch-fleet, found beside this program or in PATH: `framewatch
 /// fleet task` runs `framewatch-fleet task`, `framewatch uplink` runs `framewatch-fleet uplink`.
-/// Returns only if there is no such program: prints what is missing and returns kBadInput.
+/// Does not return on success. If the program is not found, prints how to get it and returns
+/// kBadInput.
 int become_fleet_program(int argc, const char* const* argv) {
   std::string name = kFleetProgram;
   std::vector<std::string> words(argv + (argv[1] == std::string_view("fleet") ? 2 : 1),

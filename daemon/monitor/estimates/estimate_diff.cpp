@@ -13,7 +13,7 @@ bool same_bits(double a, double b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// Returns NaN if there is no such entry.
+/// Returns element `i` as a double, or NaN if `values` is shorter.
 template <typename Value>
 double entry(const std::vector<Value>& values, std::size_t i) {
   return i < values.size() ? static_cast<double>(values[i])

@@ -53,7 +53,7 @@ bool write_estimates_csv(const std::string& log, const std::string& channel, boo
 /// `parameter` and `unit`, columns of names; `window_end_s` and `status`, columns; `value`,
 /// `std_error` and `observable`, windows x parameters; with boxplots also `q1`, `median`, `q3`,
 /// `whisker_low`, `whisker_high`, `outliers`, windows x parameters. NaN stands for a missing value.
-/// The same estimates give the same bytes. A variable of that format holds at most 2 GiB.
+/// Equal estimates give byte-identical files. The format limits each variable to 2 GiB.
 class EstimatesMatWriter {
  public:
   [[nodiscard]] bool open(const std::string& path, const std::vector<std::string>& names,

@@ -24,7 +24,8 @@ struct EventReportSummary {
 /// Returns true if `name` has the form that event_report_name() makes, so it cannot lead to another
 /// folder.
 bool is_event_report_name(const std::string& name);
-/// Returns the names of the reports in a folder, oldest first; empty if there is no folder.
+/// Returns the names of the reports in a folder, oldest first. A missing folder gives an empty
+/// list.
 std::vector<std::string> event_report_names(const std::string& folder);
 /// Reads one of these reports. Returns nullopt if its JSON file is not a report or is a link.
 std::optional<EventReportSummary> event_report_summary(const std::string& folder,
@@ -36,7 +37,8 @@ class NewestEventReport {
   /// An empty `folder`: the building has no reports.
   explicit NewestEventReport(std::string folder);
 
-  /// Looks for a newer report and reads it. Returns the newest one; nullopt if there is no report.
+  /// Reads the newest report if it is newer than the last one read. Returns the newest report, or
+  /// nullopt for an empty folder.
   const std::optional<EventReportSummary>& poll();
   const std::optional<EventReportSummary>& newest() const {
     return newest_;

@@ -32,8 +32,8 @@ struct TimeSpan {
   std::int64_t from_us, to_us;
 };
 /// Copies the blocks of a raw log with samples within one of the spans to a log of the same name in
-/// `folder`. Makes no log if there is no such block. Returns an empty string, or the problem; then
-/// nothing was written.
+/// `folder`. Writes no log if no block has such samples. Returns an empty string. On failure,
+/// returns the problem and writes nothing.
 std::string excerpt_raw_log(const std::string& path, const std::vector<TimeSpan>& spans,
                             const std::string& folder);
 

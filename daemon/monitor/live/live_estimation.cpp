@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "daemon/base/clocks.h"
+#include "daemon/monitor/actions/acknowledge.h"
 #include "daemon/monitor/live/live_intake.h"
 
 namespace framewatch::daemon {
@@ -161,7 +162,8 @@ void LiveEstimation::estimate_frame(int bus, const drivers::CanFrame& frame) {
 void LiveEstimation::on_message(const drivers::LcmMessage& message) {
   if (message.channel == request_channel_) {
     const auto* bytes = static_cast<const std::uint8_t*>(message.data);
-    if (requests_.size() < kMaxRequests) requests_.emplace_back(bytes, bytes + message.size);
+    if (requests_.size() < AcknowledgeDesk::kMaxRequests)
+      requests_.emplace_back(bytes, bytes + message.size);
     return;
   }
   if (!catching_up()) return estimate_message(message);

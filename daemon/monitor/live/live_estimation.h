@@ -109,8 +109,6 @@ class LiveEstimation : public EstimationListener {
   static constexpr std::size_t kMaxLater =
       1'000'000;                                     ///< messages and frames kept during catch_up()
   static constexpr std::size_t kMaxEvents = 10'000;  ///< between two take_events()
-  static constexpr std::size_t kMaxRequests =
-      16;  ///< between two take_requests(); senders repeat theirs
   const LiveTimes& times() const { return times_; }
   /// Returns the counters of messages that the LCM receiver dropped.
   drivers::ReceiverCounters dropped() const { return intake_.lcm().dropped(); }

@@ -28,7 +28,6 @@ class LiveIntake {
 
   const drivers::LcmSource& lcm() const { return lcm_; }
   drivers::CanSource& can() { return can_; }
-  const drivers::CanSource& can() const { return can_; }
 
  private:
   bool has_buses_;

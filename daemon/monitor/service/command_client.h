@@ -49,8 +49,8 @@ std::string command_path(const std::string& directory, const Config& config,
 
 /// The outcome of a command.
 struct CommandAnswer {
-  bool answered = false;  ///< a daemon answered, perhaps with a refusal
-  std::string problem;    ///< why there is no answer, or why the daemon refused; else empty
+  bool answered = false;            ///< a daemon answered, perhaps with a refusal
+  std::string problem;              ///< why the daemon did not answer or refused; empty on success
   std::vector<std::uint8_t> bytes;  ///< the message that answers the command
 };
 

@@ -13,8 +13,9 @@ struct StartCount {
   std::int64_t unclean_starts = 0;  ///< starts after a run that did not stop cleanly
 };
 
-/// Counts one more start. Starts from zero if there is no readable file. Sets `problem` to the
-/// reason if the count cannot be stored, else to an empty string.
+/// Adds one start to the count beside the state file `state_path`, and returns the new count. An
+/// unreadable or missing count is taken as zero. Sets `problem` to why the count cannot be stored,
+/// or to an empty string.
 StartCount count_start(const std::string& state_path, std::string& problem);
 /// Records that this run stops cleanly. Returns an empty string, or why that could not be stored.
 std::string count_clean_stop(const std::string& state_path, const StartCount& count);

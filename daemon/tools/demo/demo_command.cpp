@@ -235,7 +235,7 @@ int demo(const DemoArguments& a) {
         return {true, "the demo has no daemon to tell", {}};
       });
   WebServer server(web, live);
-  // Without LCM samples there is no page to draw.
+  // The page draws LCM samples. With --can it would stay empty.
   const bool served = a.can.empty() && socket >= 0 && server.start(socket, no_page);
   if (!served && a.can.empty()) fmt::print(stderr, "framewatch demo: no page: {}\n", no_page);
   if (!a.quiet)

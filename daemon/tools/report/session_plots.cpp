@@ -321,8 +321,8 @@ std::string transfer_section(const SessionReport& r) {
                      "reference-dynamic / reference-static", "segments"},
                     rows) +
          "<p>The model's lowest mode along the direction is paired with the measured peak of the "
-         "most similar shape: MAC 1 is the same shape, below 0.8 there is no pair. "
-         "Reference-dynamic "
+         "most similar shape. A MAC of 1 means equal shapes; modes with a MAC below 0.8 are not "
+         "paired. Reference-dynamic "
          "stiffness is reference-static stiffness times the square of the ratio of the two "
          "frequencies, for the frames of that direction.</p>\n";
 }
