@@ -33,9 +33,7 @@ build_preset() {
     return 1
   fi
   use_ccache
-  # CI needs no variables for a debugger, and joins sources. A build at your desk finds missing #includes.
   local flags=()
-  [ -z "${CI:-}" ] || flags=(-DCMAKE_CXX_FLAGS_DEBUG="-Og -g1" -DFRAMEWATCH_JOIN=ON)
   # The preset names clang 14, which Debian 13 does not have.
   [ "$preset" != fuzz ] || command -v clang++-14 >/dev/null || flags+=(-DCMAKE_CXX_COMPILER=clang++)
   (cd "$root" && cmake --preset "$preset" -B "$build_root/$preset" "${flags[@]}" >/dev/null) &&

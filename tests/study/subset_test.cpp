@@ -52,16 +52,7 @@ void PrintTo(const HiddenEffect& effect, std::ostream* out) {
 }
 class StudyEffects : public testing::TestWithParam<HiddenEffect> {};
 
-/// Takes several minutes per case without optimization.
-#ifdef __OPTIMIZE__
-#define FRAMEWATCH_OPTIMISED_OR_SKIP() static_cast<void>(0)
-#else
-#define FRAMEWATCH_OPTIMISED_OR_SKIP() \
-  GTEST_SKIP() << "diagnoses take minutes without optimisation; asan and release builds run them"
-#endif
-
 TEST_P(StudyEffects, AreNamedAtTheirPlaces) {
-  FRAMEWATCH_OPTIMISED_OR_SKIP();
   const Outcome o = diagnosed("catalogue", GetParam().name, GetParam().seed, GetParam().noise);
   EXPECT_TRUE(o.all_right()) << o.verdict;
 }
@@ -78,10 +69,6 @@ INSTANTIATE_TEST_SUITE_P(Subset, StudyEffects,
 
 // One mass would act along the same two directions.
 TEST(StudySubset, TwoEffectsAtOneCrossingAreBothFound) {
-  FRAMEWATCH_OPTIMISED_OR_SKIP();
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "takes minutes under the sanitizers; the debug and release builds run it";
-#endif
   const Outcome o = diagnosed("two_effects", "tuned_mass_damper+two_sided_gap", 2300049, 0.02);
   EXPECT_TRUE(o.all_right()) << o.verdict;
 }
@@ -91,7 +78,6 @@ TEST(StudySubset, NothingHiddenIsAdequate) {
 }
 
 TEST(StudySubset, AnEffectThatIsNotInTheCatalogueIsNotNamedConfidently) {
-  FRAMEWATCH_OPTIMISED_OR_SKIP();
   const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, kNoise, {"two_sided_gap"});
   EXPECT_FALSE(o.confidently_wrong) << (o.named.empty() ? "" : o.named.front());
   EXPECT_NE(o.verdict, "adequate");
