@@ -10,6 +10,7 @@
 #include "estimator/identify/elements/story_design.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/numeric/nan.h"
+#include "estimator/numeric/quantile.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
 
@@ -117,10 +118,7 @@ double SlowDrift::damping_lag_s() const {
     if (table_[p].kind == ParameterKind::frame_stiffness && identified_[c] != 0)
       ratios.push_back(theta_[c] / theta_[k]);
   }
-  if (ratios.empty()) return 0;
-  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2),
-                   ratios.end());
-  return ratios[ratios.size() / 2];
+  return upper_median(ratios, 0);
 }
 
 void SlowDrift::form() {
