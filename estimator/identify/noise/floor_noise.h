@@ -21,10 +21,7 @@ struct FloorNoise {
   Eigen::MatrixXd covariance;   ///< covariance of the deformations, front unknowns x front unknowns
   std::vector<bool> damping;    ///< by unknown: multiplies a rate, not a deformation
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a.finite(variance, covariance);
-  }
+  void archive(auto& a) { a.finite(variance, covariance); }
 };
 
 /// Returns the noise of a floor. noise_density: of every axis, m/s^2/sqrt(Hz).
