@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "estimator/numeric/nan.h"
 #include "estimator/numeric/quantile.h"
 
 namespace framewatch::estimator {
@@ -343,7 +344,7 @@ void AxisGuard::remove(std::size_t a, int age, std::vector<std::int64_t>& counte
   if (age >= waiting_) return;
   double& value = held(age).accel[a];
   if (std::isnan(value)) return;
-  value = std::numeric_limits<double>::quiet_NaN();
+  value = kNaN;
   ++counter[a];
 }
 

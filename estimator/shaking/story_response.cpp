@@ -2,7 +2,6 @@
 #include "estimator/shaking/story_response.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -22,13 +21,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMisfitMemory_s = 60;  // longer than the quiet time that ends a strong motion
-
-VectorXd frame_masses(const Structure& s) {
-  VectorXd out(s.degrees_of_freedom());
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f) out[s.dof(story, f)] = s.frame_mass(story, f);
-  return out;
-}
 
 /// Turns displacements of floors into drifts of stories, in place.
 void subtract_floors_below(const Structure& s, MatrixXd& rows) {
@@ -85,7 +77,7 @@ void SlowDrift::follow_misfit(const WindowEstimate& e) {
   double strength = 0;
   for (const double amplitude : e.amplitude)
     if (std::isfinite(amplitude)) strength += amplitude * amplitude;
-  const double passed_s = std::chrono::duration<double>(e.end - newest_).count();
+  const double passed_s = seconds_of(e.end - newest_);
   newest_ = e.end;
   strongest_m2_ *= std::exp(-std::max(0.0, passed_s) / kMisfitMemory_s);
   if (!std::isfinite(e.residual_ratio) || strength < strongest_m2_) return;
