@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,6 +31,11 @@ FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformatio
 
 /// Updates variance and covariance for other densities of the same axes, without allocating.
 void set_noise_density(FloorNoise& noise, const std::vector<double>& density, double rate_hz);
+
+/// Returns the response of the high-pass and one tap set to a unit impulse. `length` covers the
+/// decay of the high-pass.
+std::vector<double> impulse_response(const std::vector<double>& taps, const HighPass& high_pass,
+                                     std::size_t length);
 
 /// Second moments of a regressor filter's outputs for white acceleration noise of variance 1: g00 =
 /// var p, g11 = var p', g22 = var p'', g20 = cov(p'', p). docs/equations.md (14).
