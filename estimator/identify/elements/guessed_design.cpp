@@ -53,7 +53,7 @@ void retuned_design(const FloorLayout& layout, const ParameterTable& table,
     const auto i = static_cast<std::size_t>(u);
     if (shown[i] == 0 || !(ratio[i] > 0)) continue;
     const double moved = trusted_ratio(ratio[i], std_error[i] / ratio[i]);
-    const int parameter = layout.parameter(u / layout.own(), u % layout.own());
+    const int parameter = layout.parameter_of(u);
     work.factor[static_cast<std::size_t>(parameter)] =
         std::clamp(moved, 1 / kLargestStep, kLargestStep);
   }

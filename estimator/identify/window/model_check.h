@@ -136,8 +136,7 @@ class ModelCheck {
   const ModelFit& give(const Context& context);
   /// Returns the parameter of an unknown in internal order.
   std::size_t parameter(int unknown) const {
-    return static_cast<std::size_t>(
-        layout_.parameter(unknown / layout_.own(), unknown % layout_.own()));
+    return static_cast<std::size_t>(layout_.parameter_of(unknown));
   }
 
   const PipelineConfig* config_;
