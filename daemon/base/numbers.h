@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "estimator/numeric/quantile.h"
 
 namespace framewatch::daemon {
 
@@ -18,10 +19,7 @@ std::string percent_1(double share);
 /// no value is left.
 inline double median(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
-  if (values.empty()) return NAN;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return estimator::upper_median(values);
 }
 
 /// Returns "25.02 ± 0.14": the error with two digits, the value with the same decimals.

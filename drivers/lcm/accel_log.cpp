@@ -16,6 +16,7 @@
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "drivers/records/record_builder.h"
+#include "estimator/numeric/quantile.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -33,9 +34,7 @@ double usual_rate(const std::vector<SensorNodeSample>& samples) {
     if (samples[i].time > samples[i - 1].time)
       steps_us.push_back((samples[i].time - samples[i - 1].time).count());
   if (steps_us.empty()) return 0;
-  const auto middle = steps_us.begin() + static_cast<std::ptrdiff_t>((steps_us.size() - 1) / 2);
-  std::nth_element(steps_us.begin(), middle, steps_us.end());
-  return 1e6 / static_cast<double>(*middle);
+  return 1e6 / static_cast<double>(estimator::lower_median(steps_us));
 }
 
 /// Collects the samples of one channel and its table.

@@ -11,6 +11,8 @@
 
 #include <fmt/core.h>
 
+#include "estimator/numeric/quantile.h"
+
 namespace framewatch::drivers {
 namespace {
 
@@ -129,11 +131,7 @@ double RecordBuilder::even_step() const {
   for (std::size_t i = 0; i < steps.size(); ++i)
     steps[i] = record_.time_s[i + 1] - record_.time_s[i];
   double usual = 1 / expected_rate_hz_;
-  if (expected_rate_hz_ == 0) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    usual = *middle;
-  }
+  if (expected_rate_hz_ == 0) usual = estimator::lower_median(steps);
   // The median step is wrong when times are rounded, to 1 ms for example; the mean is right.
   double sum = 0;
   double count = 0;

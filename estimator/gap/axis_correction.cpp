@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
+
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNearly = 0.98;  ///< of the clipping level; larger samples are ignored
 
 }  // namespace
@@ -35,7 +35,7 @@ AxisCorrection::AxisCorrection(const std::vector<SensorAxis>& axes,
     earliest = std::min(earliest, whole_.back());
   }
   length_ = longest_ - earliest + 1;
-  ring_.assign(static_cast<std::size_t>(length_) * axes_, kMissing);
+  ring_.assign(static_cast<std::size_t>(length_) * axes_, kNaN);
 }
 
 const std::vector<double>& AxisCorrection::apply(const std::vector<double>& accel) {
@@ -63,7 +63,7 @@ const std::vector<double>& AxisCorrection::apply(const std::vector<double>& acce
         break;
       }
       case EffectKind::clipping:
-        if (std::abs(a) >= kNearly * e->value("level_mps2")) a = kMissing;
+        if (std::abs(a) >= kNearly * e->value("level_mps2")) a = kNaN;
         break;
       case EffectKind::swapped:
         std::swap(a, aligned_[static_cast<std::size_t>(e->place.with_channel)]);

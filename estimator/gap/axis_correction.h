@@ -24,8 +24,7 @@ class AxisCorrection {
   /// next call.
   const std::vector<double>& apply(const std::vector<double>& accel);
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(ring_);
     a.within(newest_, 0, length_ - 1);
   }

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kOver = 0.5;  ///< of raise_ratio: below it a gap is over
 
@@ -35,7 +34,7 @@ GapMeter::GapMeter(const std::vector<char>& compared, double rate_hz, int window
       per_second_(std::max(1, static_cast<int>(std::lround(rate_hz)))),
       window_s_(window_s),
       seconds_(static_cast<std::size_t>(window_s) * compared.size()) {
-  gap_.axis_nrmse.assign(compared.size(), kUnknown);
+  gap_.axis_nrmse.assign(compared.size(), kNaN);
   gap_.axis_floor = gap_.axis_nrmse;
   restart();
 }
@@ -74,7 +73,7 @@ bool GapMeter::close(Time time, const std::vector<double>& noise_variance) {
 void GapMeter::compare(const std::vector<double>& noise_variance) {
   double difference = 0, measured = 0, noise = 0;
   for (std::size_t a = 0; a < compared_.size(); ++a) {
-    gap_.axis_nrmse[a] = gap_.axis_floor[a] = kUnknown;
+    gap_.axis_nrmse[a] = gap_.axis_floor[a] = kNaN;
     if (!compared_[a]) continue;
     Sum sum;
     for (int s = 0; s < window_s_; ++s) {

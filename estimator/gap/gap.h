@@ -37,10 +37,7 @@ struct GapWindow {
   double floor = 0;                            ///< NaN while it is not known
   std::vector<double> axis_nrmse, axis_floor;  ///< of each axis; NaN: base, or no values
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(start, end, nrmse, floor, axis_nrmse, axis_floor);
-  }
+  void archive(auto& a) { a(start, end, nrmse, floor, axis_nrmse, axis_floor); }
 };
 
 /// Sums simulation and measurement second by second and compares them over the last window_s.
@@ -59,8 +56,7 @@ class GapMeter {
   bool close(Time time, const std::vector<double>& noise_variance);
   const GapWindow& gap() const { return gap_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(seconds_, gap_);
     a.within(newest_, 0, window_s_ - 1);
     a.within(full_, 0, window_s_);
@@ -72,8 +68,7 @@ class GapMeter {
     double difference = 0, measured = 0;  ///< of squares
     std::int64_t count = 0;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.finite(difference, measured);
       a.within(count, 0, a.kMaxCount);
     }
@@ -103,8 +98,7 @@ struct GapNews {
   int parameter = -1;
   double ratio = 0, std_error = 0;  ///< its change relative to the model
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.within(id, -2 * a.kMaxCount, 2 * a.kMaxCount);
     a.within(state, 0, static_cast<double>(AlarmState::changed));
     a(found, since);
@@ -128,8 +122,7 @@ class GapAlarm {
   /// does.
   std::optional<Time> showing() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.within(seconds_, 0, a.kMaxCount);
     a(raised_, since_, shown_, news_);
   }

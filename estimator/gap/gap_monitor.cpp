@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "estimator/identify/elements/story_design.h"
 #include "estimator/numeric/nan.h"
@@ -18,12 +17,6 @@ std::vector<DerivativeTriple> triples(const AxisCorrection& correction, double r
   std::vector<DerivativeTriple> out;
   for (const double rest : correction.rest()) out.push_back(matched_triple(rate_hz, rest));
   return out;
-}
-
-/// Returns a learner that averages any number of windows.
-BaselineLearner any_window(const ParameterTable& table) {
-  return BaselineLearner(std::vector<Watched>(static_cast<std::size_t>(table.size())),
-                         std::numeric_limits<double>::infinity());
 }
 
 std::vector<char> compared(const std::vector<std::vector<std::pair<int, double>>>& seen) {
@@ -69,7 +62,7 @@ GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxi
       learner_(table_.size(), table_.elements(), options.learn_s),
       theta_error_(static_cast<std::size_t>(table_.size())),
       has_law_(static_cast<std::size_t>(table_.size())),
-      since_gap_(any_window(table_)),
+      since_gap_(BaselineLearner::of_any_windows(theta_error_.size())),
       alarm_(options),
       driven_(inputs_.from_axes.rows()),
       noise_variance_(axes.size()) {
@@ -125,7 +118,7 @@ void GapMonitor::learn(const WindowEstimate& estimate, const Eigen::VectorXd& be
   if (current_) {
     const auto showing = alarm_.showing();
     if (!showing)
-      since_gap_ = any_window(table_);
+      since_gap_ = BaselineLearner::of_any_windows(theta_error_.size());
     else if (estimate.start >= *showing)
       (void)since_gap_.push(estimate);
     return;

@@ -42,14 +42,13 @@ class GapMonitor {
   /// Returns the alarm that began or ended at the last push(), or null.
   const GapNews* news() const { return news_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     bool modelled = has_model();
     std::vector<double> theta;
     if (modelled) theta.assign(theta_.begin(), theta_.end());
     a(learner_, alarm_, since_gap_, named_, driving_, modelled);
     a.any_size(theta);
-    if constexpr (Archive::kReading) {
+    if (a.kReading) {
       take_inputs();
       for (const double value : theta)
         if (!(value > 0 && value < a.kMax)) return a.refuse();
@@ -76,8 +75,7 @@ class GapMonitor {
     double settled_s = 0;
     std::int64_t expected_index = -1;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a(correction, filter, running, noise, meter, held);
       a.within(newest, 0, RunningModel::kDelay);  // of kDelay + 1 instants
       a.finite(settled_s);

@@ -37,12 +37,11 @@ class DrivingAxes {
   /// Returns flags of all axes; those that move with the floors are always present.
   const std::vector<std::uint8_t>& present() const { return present_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     std::vector<std::uint8_t> present = present_, seen = seen_;
     a(present, seen);
     a.within(steady_, 0, a.kMaxCount);
-    if constexpr (Archive::kReading)
+    if (a.kReading)
       if (!restore(present, seen)) a.refuse();
   }
 

@@ -25,8 +25,7 @@ class ModelLearner {
   /// order, SI; NaN for the others.
   std::vector<WindowMean> learned() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(windows_, joined_);
     a.within(count_, 0, kMax);
     a(complete_);
@@ -40,11 +39,10 @@ class ModelLearner {
     double length_s = 0;  ///< without the time between joined windows
     std::vector<double> value, std_error;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a(start, end, value, std_error);
       a.within(length_s, 0, a.kMaxCount);
-      if constexpr (Archive::kReading)
+      if (a.kReading)
         for (const std::vector<double>* of : {&value, &std_error})
           for (const double v : *of)
             if (!std::isnan(v) && !(std::abs(v) <= a.kMax)) return a.refuse();

@@ -7,6 +7,7 @@
 #include "estimator/simulate/building_model.h"
 #include "estimator/simulate/element_law.h"
 #include "estimator/simulate/linear_building.h"
+#include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/nonlinear_building.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
@@ -14,7 +15,6 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kLongestStep_s = 1e-3;
 constexpr double kBias_s = 150;  ///< far slower than any motion
 constexpr double kLeft = 0.01;   ///< remainder of a free vibration after settling
 constexpr double kMinSettle_s = 2, kMaxSettle_s = 120;
@@ -71,8 +71,8 @@ double filtered_variance(double rate_hz, double high_pass_hz) {
 RunningModel::RunningModel(const Structure& structure, const ParameterTable& table,
                            const GapModel& model, const Inputs& inputs, double rate_hz,
                            double high_pass_hz, const Eigen::VectorXd& late)
-    : steps_(static_cast<int>(std::ceil(1 / (rate_hz * kLongestStep_s) - 1e-9))),
-      building_(building_of(structure, table, model, inputs, 1 / (rate_hz * steps_))),
+    : steps_(steps_per_instant({rate_hz})),
+      building_(building_of(structure, table, model, inputs, fine_step_s({rate_hz}))),
       rest_(building_->motion()),
       settle_s_(settle_time(structure, table, model.theta)),
       recent_(late.size(), kTaps),

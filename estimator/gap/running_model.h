@@ -38,13 +38,12 @@ class RunningModel {
 
   static constexpr int kDelay = 16;  ///< instants
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     std::vector<double> motion = building_->motion();
     a.finite(recent_, bias_, before_, motion);
     a.within(newest_, 0, kTaps - 1);
     a(filter_);
-    if constexpr (Archive::kReading) {
+    if (a.kReading) {
       if (!building_->resume(motion)) restart();
     }
   }
@@ -85,8 +84,7 @@ class NoisePath {
   /// Precondition: known().
   const Eigen::MatrixXd& inputs() const { return gain_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(model_);
     a.within(next_, 0, static_cast<double>(inputs_.used.size()));
     a.within(instant_, 0, instants_ - 1);

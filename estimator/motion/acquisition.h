@@ -31,8 +31,7 @@ class LostSampleFiller {
   /// Returns the number of repaired samples per axis.
   const std::vector<std::int64_t>& repaired() const { return repaired_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(ring_);
     a.within(next_, 0, 4);
     a.within(filled_, 0, 5);
@@ -139,10 +138,7 @@ class Acquisition {
   const std::vector<SensorAxis>& axes() const { return axes_; }
   std::vector<AxisCounters> counters() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(merger_, guard_, filler_);
-  }
+  void archive(auto& a) { a(merger_, guard_, filler_); }
 
  private:
   enum class Ending { no, guard, filler };

@@ -6,6 +6,9 @@
 #include <cstddef>
 #include <limits>
 
+#include "estimator/numeric/nan.h"
+#include "estimator/numeric/quantile.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -327,10 +330,7 @@ double AxisGuard::others(std::size_t a, const std::vector<double>& of) {
   sorted_.clear();
   for (std::size_t b = 0; b < state_.size(); ++b)
     if (neighbours(a, b)) sorted_.push_back(of[b]);
-  if (sorted_.empty()) return 0;
-  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
-  std::nth_element(sorted_.begin(), middle, sorted_.end());
-  return *middle;
+  return upper_median(sorted_, 0);
 }
 
 /// Returns true if no neighbor has moved during the last kLookAhead changes.
@@ -344,7 +344,7 @@ void AxisGuard::remove(std::size_t a, int age, std::vector<std::int64_t>& counte
   if (age >= waiting_) return;
   double& value = held(age).accel[a];
   if (std::isnan(value)) return;
-  value = std::numeric_limits<double>::quiet_NaN();
+  value = kNaN;
   ++counter[a];
 }
 

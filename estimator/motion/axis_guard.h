@@ -47,10 +47,7 @@ class SpikeGuard {
   /// Decides what is still doubtful. Call it when the input has ended.
   Decided finish(int axis);
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(axis_);
-  }
+  void archive(auto& a) { a(axis_); }
 
  private:
   struct Axis {
@@ -70,8 +67,7 @@ class SpikeGuard {
     unsigned back = 0;      ///< ages as bits: sound, but after a doubtful sample
     std::array<double, kLookAhead + 1> held{};
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.finite(last, change, step, step_before, low, high, low_before, high_before);
       for (int* number : {&seen, &in_period, &still, &out}) a.within(*number, 0, 1e6);
       for (unsigned* ages : {&doubtful, &back}) a.within(*ages, 0, (2 << kLookAhead) - 1);
@@ -136,8 +132,7 @@ class AxisGuard {
   static constexpr int kLookAhead = SpikeGuard::kLookAhead;
   static constexpr double kFinest = 1e-6;  ///< m/s^2: finest resolution of an accelerometer
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(state_, spikes_, ring_);
     a.within(newest_, 0, kSlots - 1);
     a.within(waiting_, 0, kSlots);
@@ -165,8 +160,7 @@ class AxisGuard {
     bool paused = false;      ///< everything stopped at once, at most half a second ago
     bool after_clip = false;  ///< also remove the next sample
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.finite(last, step, smallest_step, lowest, highest);
       for (double* mean : {&motion, &strongest, &own, &others, &predicted})
         a.within(*mean, 0, a.kMax);

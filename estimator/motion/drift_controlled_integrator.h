@@ -44,8 +44,7 @@ class DriftControlledIntegrator {
   double held_first(int axis) const { return held_first_[index(axis)]; }
   double held_second(int axis) const { return held_second_[index(axis)]; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.within(newest_, 0, static_cast<double>(length_ - 1));
     a.each_within(filled_, 0, static_cast<double>(length_));
     a.finite(x1_, x2_, y1_, y2_, ring_, value_, first_, second_, held_first_, held_second_);

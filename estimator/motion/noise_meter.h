@@ -23,8 +23,7 @@ class NoiseMeter {
   /// Discards all measurements.
   void reset();
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(axis_);
     a.finite(ring_);
     a.within(newest_, 0, static_cast<double>(taps_.size() - 1));
@@ -40,8 +39,7 @@ class NoiseMeter {
     int tainted = 0;  ///< coming outputs whose filter holds an excluded value
     double power = 0;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       for (long* number : {&measured, &beyond}) a.within(*number, 0, a.kMaxCount);
       for (int* number : {&filled, &still}) a.within(*number, 0, 1000);
       a.within(tainted, 0, 1000);

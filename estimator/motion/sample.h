@@ -26,6 +26,15 @@ inline Time from_microseconds(std::int64_t us) {
   return Time(SensorClock::duration(us));
 }
 
+/// Returns the seconds since the epoch of the sensor clock.
+inline double seconds_of(Time time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
+inline double seconds_of(SensorClock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
 /// The raw value of one axis at one instant, m/s^2 before calibration.
 struct AccelSample {
   Time time;
@@ -47,8 +56,7 @@ struct SampleSet {
     std::copy(other.accel.begin(), other.accel.end(), accel.begin());
   }
   /// Archives the state, as every archive() does: estimator/state/archive.h.
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(time);
     a.within(index, 0, a.kMaxCount);
     a(accel);

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -31,7 +32,7 @@ SampleMerger::SampleMerger(int axes, double rate_hz, double lateness_s)
 }
 
 void SampleMerger::clear(Instant& instant) {
-  std::fill(instant.accel.begin(), instant.accel.end(), std::numeric_limits<double>::quiet_NaN());
+  std::fill(instant.accel.begin(), instant.accel.end(), kNaN);
   std::fill(instant.has.begin(), instant.has.end(), std::uint8_t{0});
   instant.delivered = 0;
 }

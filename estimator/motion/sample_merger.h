@@ -19,8 +19,7 @@ struct AxisCounters {
   std::int64_t rejected = 0;  ///< NaN, absurd, duplicate, off the grid or far from the others
   std::int64_t absurd = 0;    ///< part of `rejected`: values that no sensor can have measured
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     for (std::int64_t* count :
          {&received, &missing, &late, &repaired, &stuck, &clipped, &rejected, &absurd})
       a.within(*count, 0, a.kMaxCount);
@@ -48,8 +47,7 @@ class SampleMerger {
   const std::vector<AxisCounters>& counters() const { return counters_; }
   AxisCounters& counters_of(int axis) { return counters_[static_cast<std::size_t>(axis)]; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(open_);
     a.each_within(silent_, 0, 1);
     a.within(silent_count_, 0, static_cast<double>(silent_.size()));
@@ -68,8 +66,7 @@ class SampleMerger {
     std::vector<std::uint8_t> has;
     int delivered = 0;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a(accel);
       a.each_within(has, 0, 1);
       a.within(delivered, 0, static_cast<double>(has.size()));

@@ -93,9 +93,7 @@ std::optional<MeasuredBuilding> measured_building(const Structure& s, const Para
       const double noise = motion.row(dof).cwiseAbs2() * out.variance;
       weighted.row(i) = constraint.row(dof) / noise;
     }
-    MatrixXd model(rows, constraint.cols());
-    for (Index i = 0; i < rows; ++i)
-      model.row(i) = constraint.row(measured[static_cast<std::size_t>(i)]);
+    const MatrixXd model = constraint(measured, Eigen::all);
     const MatrixXd normal = weighted.transpose() * model;
     const Ldlt solver(normal);
     const Eigen::VectorXd pivots = solver.pivots();

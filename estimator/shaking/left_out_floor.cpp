@@ -41,17 +41,13 @@ VectorXd filtered(VectorXd v, double corner_hz, double rate_hz, bool high) {
   return v;
 }
 
-bool along(const Structure& s, const SensorAxis& axis, Direction direction) {
-  return (axis.frame >= 0 ? s.direction(axis.frame) : axis.direction) == direction;
-}
-
 /// Returns the accelerometers of a floor along a direction. used: without those for a check.
 std::vector<Index> axes_of(const PipelineConfig& c, int floor, Direction direction,
                            bool used = false) {
   std::vector<Index> out;
   for (std::size_t a = 0; a < c.axes.size(); ++a)
     if (c.axes[a].story == floor && c.axes[a].horizontal() && !(used && c.axes[a].check) &&
-        along(c.structure, c.axes[a], direction))
+        direction_of(c.structure, c.axes[a]) == direction)
       out.push_back(static_cast<Index>(a));
   return out;
 }

@@ -2,9 +2,7 @@
 #include "estimator/shaking/shaking_watch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "estimator/numeric/nan.h"
@@ -15,20 +13,10 @@ namespace {
 
 constexpr std::size_t kBefore = 12, kEnds = 3;
 
-double seconds(Time from, Time to) {
-  return std::chrono::duration<double>(to - from).count();
-}
-
-BaselineLearner any_windows(std::size_t parameters) {
-  return BaselineLearner(std::vector<Watched>(parameters), std::numeric_limits<double>::infinity());
-}
-
 }  // namespace
 
 double ShakenStiffness::std_error() const {
-  if (record.measured()) return record.change.std_error;
-  return std::hypot(after.std_error, after.value / before.value * before.std_error) /
-         std::abs(before.value);
+  return record.measured() ? record.change.std_error : ratio_error(before, after);
 }
 
 ShakingWatch::Windows::Windows(std::size_t most_, std::size_t parameters)
@@ -67,6 +55,7 @@ WindowMean ShakingWatch::Windows::mean(std::size_t p, std::size_t parameters) co
 ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& options)
     : elements_(static_cast<std::size_t>(config.parameters().elements())),
       options_(options),
+      trigger_axes_(shaken_axes(config.axes)),
       response_(config),
       peak_(config.axes.size(), static_cast<std::size_t>(config.structure.degrees_of_freedom())),
       before_(kBefore, elements_),
@@ -74,13 +63,7 @@ ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& o
       final_(kEnds, elements_),
       after_(kEnds, elements_),
       late_(kEnds, elements_),
-      during_(any_windows(2 * elements_)) {
-  for (std::size_t a = 0; a < config.axes.size(); ++a)
-    if (config.axes[a].story == 0 && config.axes[a].horizontal()) trigger_axes_.push_back(a);
-  if (!trigger_axes_.empty()) return;
-  for (std::size_t a = 0; a < config.axes.size(); ++a)
-    if (config.axes[a].horizontal()) trigger_axes_.push_back(a);
-}
+      during_(BaselineLearner::of_any_windows(2 * elements_)) {}
 
 bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {
   began_ = false;
@@ -90,7 +73,8 @@ bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {
     return false;
   const bool missed = note_interruption(set.time);
   // Motion after so long an interruption counts as another one.
-  if (active_ && missed && seconds(start_, set.time) >= kLongest_s) return end(set.time, baseline);
+  if (active_ && missed && seconds_of(set.time - start_) >= kLongest_s)
+    return end(set.time, baseline);
   const bool strong = std::any_of(trigger_axes_.begin(), trigger_axes_.end(), [this](auto axis) {
     return std::abs(response_.accel_mps2()[axis]) > options_.trigger_mps2;
   });
@@ -102,14 +86,14 @@ bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {
     after_.count = 0;
   }
   peak_.take(response_);
-  const bool over = seconds(last_, set.time) - unheard_calm_s_ >= options_.quiet_s;
-  if (!over && seconds(start_, set.time) < kLongest_s) return false;
+  const bool over = seconds_of(set.time - last_) - unheard_calm_s_ >= options_.quiet_s;
+  if (!over && seconds_of(set.time - start_) < kLongest_s) return false;
   return end(set.time, baseline);
 }
 
 bool ShakingWatch::end(Time now, const Baseline* baseline) {
   active_ = false;
-  const bool long_enough = seconds(start_, last_) >= kShortest_s;
+  const bool long_enough = seconds_of(last_ - start_) >= kShortest_s;
   if (long_enough) finish(now, baseline);
   // The next strong motion may begin in the newest interruption.
   if (unheard_count_ > 1) unheard_[0] = unheard_[unheard_count_ - 1];
@@ -131,7 +115,7 @@ bool ShakingWatch::note_interruption(Time now) {
     if (came_up_) add_unheard({now, now, false, restart});
     return false;
   }
-  const double missing_s = seconds(before, now);
+  const double missing_s = seconds_of(now - before);
   if (missing_s <= kUnheard_s) return false;
   const bool restarted = came_up_ && before <= came_up_->known && came_up_->known <= now;
   add_unheard({before, now, true, restarted ? restart : UnheardWhy::no_samples});
@@ -155,10 +139,11 @@ void ShakingWatch::begin(Time now) {
   start_ = last_ = now;
   peak_ = PeakResponse(peak_.accel_mps2.size(), peak_.drift_m.size());
   first_.count = final_.count = after_.count = late_.count = 0;
-  during_ = any_windows(2 * elements_);
+  during_ = BaselineLearner::of_any_windows(2 * elements_);
   gap_ = kNaN;
   unheard_calm_s_ = 0;
-  if (unheard_count_ > 0 && seconds(unheard_[0].to, now) >= options_.quiet_s) unheard_count_ = 0;
+  if (unheard_count_ > 0 && seconds_of(now - unheard_[0].to) >= options_.quiet_s)
+    unheard_count_ = 0;
 }
 
 void ShakingWatch::push(const WindowEstimate& e) {

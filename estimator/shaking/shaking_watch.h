@@ -57,8 +57,7 @@ struct Unheard {
   bool from_known = false;  ///< false: there are no samples before `to`
   UnheardWhy why = UnheardWhy::no_samples;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(from, to, from_known);
     a.within(why, 0, static_cast<double>(UnheardWhy::restart_no_raw));
   }
@@ -104,8 +103,7 @@ class ShakingWatch {
   bool began() const { return began_; }  ///< set by the last push of an instant
   const Shaking& ended() const { return ended_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(active_, start_, last_, response_, peak_, before_, first_, final_, after_, late_, during_,
       gap_);
     a(heard_any_, heard_, unheard_);
@@ -125,8 +123,7 @@ class ShakingWatch {
     void put(const WindowEstimate& e, std::size_t parameters);
     WindowMean mean(std::size_t parameter, std::size_t parameters) const;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.within(count, 0, static_cast<double>(most));
       a(start, end, value, std_error);
     }

@@ -84,8 +84,7 @@ double lowest_hz(const PipelineConfig& c, const ParameterTable& table, const Vec
 }
 
 bool reads_along(const Structure& s, const SensorAxis& a, Direction direction) {
-  return a.horizontal() && !a.check &&
-         (a.frame >= 0 ? s.direction(a.frame) : a.direction) == direction;
+  return a.horizontal() && !a.check && direction_of(s, a) == direction;
 }
 
 /// Returns the relative standard error of a story's stiffness by the windows; 0: not known.
@@ -202,8 +201,7 @@ PeakDrift peak_drift(const PeakResponse& peak, const Structure& structure, int s
 bool drift_is_measured(const PipelineConfig& c, int story) {
   const auto has = [&](int floor, Direction along) {
     return floor == 0 || std::any_of(c.axes.begin(), c.axes.end(), [&](const SensorAxis& a) {
-             const Direction own = a.frame >= 0 ? c.structure.direction(a.frame) : a.direction;
-             return a.horizontal() && !a.check && a.story == floor && own == along;
+             return a.story == floor && reads_along(c.structure, a, along);
            });
   };
   for (const Direction along : {Direction::x, Direction::y}) {

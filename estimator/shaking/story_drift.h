@@ -37,8 +37,7 @@ struct PeakResponse {
         before_m_(3 * degrees_of_freedom, kNaN) {}
   void take(const StoryResponse& response);
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(accel_mps2, drift_m, base_shear_n, slow_m, unseen_mps2, before_m_);
     a.each_within(lately_mps2, 0, a.kMax);
   }

@@ -2,7 +2,6 @@
 #include "estimator/shaking/story_response.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "estimator/identify/elements/story_design.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/numeric/nan.h"
+#include "estimator/numeric/quantile.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
 
@@ -21,13 +21,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMisfitMemory_s = 60;  // longer than the quiet time that ends a strong motion
-
-VectorXd frame_masses(const Structure& s) {
-  VectorXd out(s.degrees_of_freedom());
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f) out[s.dof(story, f)] = s.frame_mass(story, f);
-  return out;
-}
 
 /// Turns displacements of floors into drifts of stories, in place.
 void subtract_floors_below(const Structure& s, MatrixXd& rows) {
@@ -84,7 +77,7 @@ void SlowDrift::follow_misfit(const WindowEstimate& e) {
   double strength = 0;
   for (const double amplitude : e.amplitude)
     if (std::isfinite(amplitude)) strength += amplitude * amplitude;
-  const double passed_s = std::chrono::duration<double>(e.end - newest_).count();
+  const double passed_s = seconds_of(e.end - newest_);
   newest_ = e.end;
   strongest_m2_ *= std::exp(-std::max(0.0, passed_s) / kMisfitMemory_s);
   if (!std::isfinite(e.residual_ratio) || strength < strongest_m2_) return;
@@ -117,10 +110,7 @@ double SlowDrift::damping_lag_s() const {
     if (table_[p].kind == ParameterKind::frame_stiffness && identified_[c] != 0)
       ratios.push_back(theta_[c] / theta_[k]);
   }
-  if (ratios.empty()) return 0;
-  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2),
-                   ratios.end());
-  return ratios[ratios.size() / 2];
+  return upper_median(ratios, 0);
 }
 
 void SlowDrift::form() {

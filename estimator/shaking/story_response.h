@@ -59,8 +59,7 @@ class SlowDrift {
   /// Returns the knowledge without the noise of the sensors.
   DriftKnowledge knowledge() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(theta_, std_error_);
     a.each_within(identified_, 0, 1);
     a(misfit_, strongest_m2_, newest_);
@@ -72,11 +71,10 @@ class SlowDrift {
  private:
   void follow_misfit(const WindowEstimate& estimate);
   /// Archives the parameters of the flexibility, which may be older than theta_.
-  template <typename Archive>
-  void archive_flexibility(Archive& a) {
+  void archive_flexibility(auto& a) {
     std::vector<double> formed(formed_.begin(), formed_.end());
     a.any_size(formed);
-    if constexpr (Archive::kReading) {
+    if (a.kReading) {
       if (!formed.empty() && formed.size() != theta_.size()) return a.refuse();
       formed_.resize(0);
       flexibility_.resize(0, 0);
@@ -126,13 +124,11 @@ class EveryFloor {
   /// FloorMotion::tune().
   void follow(const WindowEstimate& estimate);
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(motion_, coming_);
-    a.within(unsettled_, 0, Archive::kMaxCount);
-    for (std::int64_t* count : {&coming_in_, &coming_unsettled_})
-      a.within(*count, 0, Archive::kMaxCount);
-    a.each_within(away_, 0, Archive::kMaxCount);
+    a.within(unsettled_, 0, a.kMaxCount);
+    for (std::int64_t* count : {&coming_in_, &coming_unsettled_}) a.within(*count, 0, a.kMaxCount);
+    a.each_within(away_, 0, a.kMaxCount);
   }
 
  private:
@@ -190,8 +186,7 @@ class StoryResponse {
   /// Returns how long displacements are not known after an interruption.
   double settling_s() const { return settling_ * step_s_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(next_index_, motions_, coming_motions_, slow_drift_);
     if (floors_) a(*floors_);
   }
@@ -203,10 +198,9 @@ class StoryResponse {
     double seen = 0;     ///< instants in the mean
     double settled = 0;  ///< instants since the last interruption
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.finite(mean, x1, x2, s1, s2, v1, v2, settled);
-      a.within(seen, 0, Archive::kMaxCount);
+      a.within(seen, 0, a.kMaxCount);
     }
   };
   void advance(Motion& motion, double accel) const;

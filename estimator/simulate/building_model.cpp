@@ -172,9 +172,7 @@ void add_modal_damping(const Structure& s, const std::vector<Effect>& effects, L
   const std::vector<const Effect*> ratios = of_kind(effects, modal_damping);
   if (ratios.empty()) return;
   const int nd = s.degrees_of_freedom();
-  Eigen::VectorXd mass(nd);
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f) mass[s.dof(story, f)] = s.frame_mass(story, f);
+  const Eigen::VectorXd mass = frame_masses(s);
   const Eigen::MatrixXd floors = floor_constraint(s);
   const RealEigen modes =
       generalized_eigen(floors.transpose() * model.stiffness().topLeftCorner(nd, nd) * floors,
@@ -247,8 +245,7 @@ LinearModel linear_model(const Structure& structure, const ParameterTable& table
   LinearModel model{
       Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, influence.cols()), {}, {}};
   model.influence.topRows(nd) = influence;
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f) model.mass[s.dof(story, f)] = s.frame_mass(story, f);
+  model.mass.head(nd) = frame_masses(s);
   for (const Element& e : elements(s, table))
     model.linear.push_back(
         {dense(e, size), theta[e.stiffness], theta[e.stiffness + table.elements()]});

@@ -5,9 +5,29 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <utility>
 
 namespace framewatch::estimator {
 namespace {
+
+/// A law without memory: a force of time, deformation and rate.
+class ForceLaw : public ElementLaw {
+ public:
+  using Force = std::function<double(double time_s, double d, double v)>;
+
+  explicit ForceLaw(Force force, double stiffness_bound = 0, double damping_bound = 0)
+      : force_(std::move(force)), stiffness_(stiffness_bound), damping_(damping_bound) {}
+  double force(double time_s, double d, double v, std::span<const double>) const override {
+    return force_(time_s, d, v);
+  }
+  double stiffness_bound() const override { return stiffness_; }
+  double damping_bound() const override { return damping_; }
+
+ private:
+  Force force_;
+  double stiffness_, damping_;
+};
 
 double sign(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
@@ -128,47 +148,6 @@ class SlackBrace : public ElementLaw {
   double kh_, dy_, up_, down_;
 };
 
-/// A force f(d) without memory.
-class ElasticLaw : public ElementLaw {
- public:
-  explicit ElasticLaw(const Effect& e) : kind_(e.kind) {
-    using enum EffectKind;
-    if (kind_ == cubic_stiffness) stiffness_ = e.value("k3_npm3");
-    if (kind_ == quadratic_stiffness) stiffness_ = e.value("k2_npm2");
-  }
-  double force(double, double d, double, std::span<const double>) const override {
-    return stiffness_ * d * (kind_ == EffectKind::cubic_stiffness ? d * d : std::abs(d));
-  }
-
- private:
-  EffectKind kind_;
-  double stiffness_ = 0;
-};
-
-/// A clearance that closes onto a spring and a dashpot that only push.
-class Contact : public ElementLaw {
- public:
-  explicit Contact(const Effect& e)
-      : stiffness_(e.value("kg_npm")), gap_(e.value("gap_m")), damping_(e.value("cg_nspm")) {
-    if (e.kind != EffectKind::one_sided_gap) return;
-    up_ = e.value("side") > 0;
-    down_ = !up_;
-  }
-  double force(double, double d, double v, std::span<const double>) const override {
-    return (up_ ? push(d, v) : 0) - (down_ ? push(-d, -v) : 0);
-  }
-  double stiffness_bound() const override { return stiffness_; }
-  double damping_bound() const override { return damping_; }
-
- private:
-  double push(double d, double v) const {
-    return d > gap_ ? std::max(stiffness_ * (d - gap_) + damping_ * v, 0.0) : 0;
-  }
-
-  double stiffness_, gap_, damping_;
-  bool up_ = true, down_ = true;
-};
-
 /// One story of an elastic amplitude_dependence.
 class AmplitudeDependence : public ElementLaw {
  public:
@@ -226,17 +205,6 @@ class SlippingJoints : public ElementLaw {
   AmplitudeDependence elastic_;
   double slip_, all_ = 0;
   std::array<Spring, kSprings> springs_;
-};
-
-class QuadraticDamping : public ElementLaw {
- public:
-  explicit QuadraticDamping(const Effect& e) : c2_(e.value("c2_ns2pm2")) {}
-  double force(double, double, double v, std::span<const double>) const override {
-    return c2_ * v * std::abs(v);
-  }
-
- private:
-  double c2_;
 };
 
 class Friction : public ElementLaw {
@@ -301,36 +269,6 @@ class StiffnessDrop : public ElementLaw {
   bool dropped_ = false;
 };
 
-class StiffnessDrift : public ElementLaw {
- public:
-  explicit StiffnessDrift(const Effect& e)
-      : change_(e.value("dk_npm")),
-        from_s_(e.value("from_s")),
-        duration_s_(e.value("duration_s")) {}
-  double force(double time_s, double d, double, std::span<const double>) const override {
-    return change_ * std::clamp((time_s - from_s_) / duration_s_, 0.0, 1.0) * d;
-  }
-  double stiffness_bound() const override { return std::abs(change_); }
-
- private:
-  double change_, from_s_, duration_s_;
-};
-
-/// Second-order effect of the weight above.
-class PDelta : public ElementLaw {
- public:
-  PDelta(const Effect& e, const Structure& s)
-      : stiffness_(-e.value("weight_n") /
-                   s.story_height[static_cast<std::size_t>(e.place.story - 1)]) {}
-  double force(double, double d, double, std::span<const double>) const override {
-    return stiffness_ * d;
-  }
-  double stiffness_bound() const override { return std::abs(stiffness_); }
-
- private:
-  double stiffness_;
-};
-
 /// Returns a spring kh in series with a slider that yields at the deformation dy.
 std::unique_ptr<ElementLaw> make_slider(double kh, double dy) {
   return std::make_unique<Bilinear>(kh, dy);
@@ -346,6 +284,42 @@ std::unique_ptr<ElementLaw> make_hysteretic_law(const Effect& e) {
   return make_slider(e.value("kh_npm"), e.value("dy_m"));
 }
 
+std::unique_ptr<ElementLaw> without_memory(ForceLaw::Force force, double stiffness_bound = 0,
+                                           double damping_bound = 0) {
+  return std::make_unique<ForceLaw>(std::move(force), stiffness_bound, damping_bound);
+}
+
+/// Returns a clearance that closes onto a spring and a dashpot that only push.
+std::unique_ptr<ElementLaw> make_contact(const Effect& e) {
+  const double stiffness = e.value("kg_npm"), gap = e.value("gap_m"), damping = e.value("cg_nspm");
+  const bool both = e.kind != EffectKind::one_sided_gap;
+  const bool up = both || e.value("side") > 0, down = both || !up;
+  const auto push = [=](double d, double v) {
+    return d > gap ? std::max(stiffness * (d - gap) + damping * v, 0.0) : 0;
+  };
+  return without_memory(
+      [=](double, double d, double v) { return (up ? push(d, v) : 0) - (down ? push(-d, -v) : 0); },
+      stiffness, damping);
+}
+
+std::unique_ptr<ElementLaw> make_drift(const Effect& e) {
+  const double change = e.value("dk_npm");
+  return without_memory(
+      [=, from_s = e.value("from_s"), duration_s = e.value("duration_s")](double time_s, double d,
+                                                                          double) {
+        return change * std::clamp((time_s - from_s) / duration_s, 0.0, 1.0) * d;
+      },
+      std::abs(change));
+}
+
+/// Returns the second-order effect of the weight above.
+std::unique_ptr<ElementLaw> make_p_delta(const Effect& e, const Structure& s) {
+  const double stiffness =
+      -e.value("weight_n") / s.story_height[static_cast<std::size_t>(e.place.story - 1)];
+  return without_memory([=](double, double d, double) { return stiffness * d; },
+                        std::abs(stiffness));
+}
+
 }  // namespace
 
 std::unique_ptr<ElementLaw> make_amplitude_law(const Effect& e, double stiffness) {
@@ -356,11 +330,14 @@ std::unique_ptr<ElementLaw> make_amplitude_law(const Effect& e, double stiffness
 std::unique_ptr<ElementLaw> make_law(const Effect& e, const Structure& s) {
   switch (e.kind) {
     case EffectKind::cubic_stiffness:
+      return without_memory(
+          [k3 = e.value("k3_npm3")](double, double d, double) { return k3 * d * (d * d); });
     case EffectKind::quadratic_stiffness:
-      return std::make_unique<ElasticLaw>(e);
+      return without_memory(
+          [k2 = e.value("k2_npm2")](double, double d, double) { return k2 * d * std::abs(d); });
     case EffectKind::one_sided_gap:
     case EffectKind::two_sided_gap:
-      return std::make_unique<Contact>(e);
+      return make_contact(e);
     case EffectKind::bilinear_hysteresis:
     case EffectKind::bouc_wen:
     case EffectKind::pinching:
@@ -372,13 +349,14 @@ std::unique_ptr<ElementLaw> make_law(const Effect& e, const Structure& s) {
         return std::make_unique<PreslidingFriction>(e);
       return std::make_unique<Friction>(e);
     case EffectKind::quadratic_damping:
-      return std::make_unique<QuadraticDamping>(e);
+      return without_memory(
+          [c2 = e.value("c2_ns2pm2")](double, double, double v) { return c2 * v * std::abs(v); });
     case EffectKind::stiffness_drop:
       return std::make_unique<StiffnessDrop>(e);
     case EffectKind::stiffness_drift:
-      return std::make_unique<StiffnessDrift>(e);
+      return make_drift(e);
     case EffectKind::p_delta:
-      return std::make_unique<PDelta>(e, s);
+      return make_p_delta(e, s);
     default:
       return nullptr;
   }

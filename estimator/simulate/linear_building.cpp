@@ -11,19 +11,6 @@
 #include "estimator/structure/matrices.h"
 
 namespace framewatch::estimator {
-namespace {
-
-/// Computes out = a * x, explicitly because Eigen's product is many times slower in a debug build.
-void multiply(const double* a, const double* x, double* out, Eigen::Index rows,
-              Eigen::Index columns) {
-  for (Eigen::Index r = 0; r < rows; ++r, a += columns) {
-    double sum = 0;
-    for (Eigen::Index c = 0; c < columns; ++c) sum += a[c] * x[c];
-    out[r] = sum;
-  }
-}
-
-}  // namespace
 
 LinearBuilding::LinearBuilding(const Structure& structure, const ParameterTable& table,
                                const Eigen::VectorXd& theta, double step_s)
@@ -79,7 +66,7 @@ void LinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   output_.resize(accel_abs_.size(), 2 * q);
   output_.leftCols(q) = -constraint_ * stiffness / velocity_scale_;
   output_.rightCols(q) = -constraint_ * damping;
-  direct_ = inputs_.force.isZero(0) ? RowMajor(0, n) : RowMajor(constraint_ * pushed);
+  direct_ = inputs_.force.isZero(0) ? RowMatrix(0, n) : RowMatrix(constraint_ * pushed);
   update_accel();
 }
 
@@ -96,7 +83,7 @@ void LinearBuilding::drive(const Eigen::Ref<const Eigen::VectorXd>& before,
   const Eigen::Index n = inputs_.influence.cols();
   state_.segment(state_.size() - 2 * n, n) = before;
   state_.tail(n) = after - before;
-  multiply(transition_.data(), state_.data(), next_.data(), transition_.rows(), state_.size());
+  multiply(transition_, state_.data(), next_.data(), 0, state_.size());
   next_.tail(2 * n) = state_.tail(2 * n);
   state_.swap(next_);
   update_accel();
@@ -110,7 +97,7 @@ bool LinearBuilding::resume(const std::vector<double>& motion) {
 }
 
 void LinearBuilding::update_accel() {
-  multiply(output_.data(), state_.data(), accel_abs_.data(), output_.rows(), output_.cols());
+  multiply(output_, state_.data(), accel_abs_.data(), 0, output_.cols());
   if (direct_.rows() == 0) return;
   const Eigen::Index n = direct_.cols();
   accel_abs_ += direct_ * (state_.segment(state_.size() - 2 * n, n) + state_.tail(n));

@@ -35,7 +35,6 @@ class LinearBuilding : public DrivenBuilding {
   [[nodiscard]] bool resume(const std::vector<double>& motion) override;
 
  private:
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   void update_accel();
 
   Structure structure_;
@@ -44,9 +43,9 @@ class LinearBuilding : public DrivenBuilding {
   Eigen::MatrixXd constraint_;  ///< degrees of freedom x independent coordinates
   Inputs inputs_;
   double velocity_scale_ = 1;  ///< 1/s; displacements are stored times this, which balances A
-  RowMajor transition_;        ///< state x (state, inputs before, their change)
-  RowMajor output_;            ///< degrees of freedom x state
-  RowMajor direct_;            ///< degrees of freedom x inputs: immediate effect of forces
+  RowMatrix transition_;       ///< state x (state, inputs before, their change)
+  RowMatrix output_;           ///< degrees of freedom x state
+  RowMatrix direct_;           ///< degrees of freedom x inputs: immediate effect of forces
   Eigen::VectorXd state_;      ///< scaled coordinates, their velocities, inputs, their change
   Eigen::VectorXd next_;
   Eigen::VectorXd accel_abs_;

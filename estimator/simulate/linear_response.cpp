@@ -14,10 +14,6 @@ namespace {
 /// Times are multiples of a binary-inexact step.
 constexpr double kRounding_s = 1e-9;
 
-int steps_per_instant(const ResponseOptions& options) {
-  return static_cast<int>(std::ceil(1 / (options.rate_hz * options.longest_step_s) - 1e-9));
-}
-
 /// Returns the number of degrees of freedom, plus 2 for the base, plus one force for each degree if
 /// there are forces.
 Eigen::Index columns_of(const SimulatedBuilding& building) {
@@ -53,9 +49,11 @@ std::unique_ptr<SimulatedBuilding> make_building(const Structure& structure,
   return std::make_unique<LinearBuilding>(structure, table, theta, step_s);
 }
 
-constexpr double kLongestStep_s = 1e-3;
-
 }  // namespace
+
+int steps_per_instant(const ResponseOptions& options) {
+  return static_cast<int>(std::ceil(1 / (options.rate_hz * options.longest_step_s) - 1e-9));
+}
 
 double fine_step_s(const ResponseOptions& options) {
   return 1 / (options.rate_hz * steps_per_instant(options));
@@ -126,8 +124,8 @@ Response linear_response(const Structure& structure, const ParameterTable& table
 MotionHistory exact_motion(const Structure& structure, const ParameterTable& table,
                            const Eigen::VectorXd& theta, const PlanMotion& motion, double rate_hz,
                            Eigen::Index rows) {
-  const int ratio = static_cast<int>(std::ceil(1 / (rate_hz * kLongestStep_s) - 1e-9));
-  const double step_s = 1 / (rate_hz * ratio);
+  const int ratio = steps_per_instant({rate_hz});
+  const double step_s = fine_step_s({rate_hz});
   const auto ground = [&](Eigen::Index step) {
     const double t = static_cast<double>(step) * step_s;
     return Eigen::Vector2d(motion.x.at(t), motion.y.at(t));

@@ -39,7 +39,8 @@ struct ResponseChannel {
   std::vector<std::pair<int, double>> also = {};  ///< further columns with their weights
 };
 
-/// Returns the step of the integration, s.
+/// Return the number of integration steps from one instant to the next, and their length, s.
+int steps_per_instant(const ResponseOptions& options);
 double fine_step_s(const ResponseOptions& options);
 
 /// Computes the response of a building, one output instant after the other. The ground motion is

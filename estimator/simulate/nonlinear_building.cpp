@@ -23,17 +23,6 @@ constexpr double kLawAngle = 0.05;
 /// Largest share of its velocity that a law's damping removes in a part.
 constexpr double kLawDecay = 0.1;
 
-/// Computes out = a * x for columns from `first` on, explicitly because Eigen's product is many
-/// times slower in a debug build.
-void multiply(const double* a, const double* x, double* out, Eigen::Index rows, Eigen::Index stride,
-              Eigen::Index first, Eigen::Index columns) {
-  for (Eigen::Index r = 0; r < rows; ++r, a += stride) {
-    double sum = 0;
-    for (Eigen::Index c = 0; c < columns; ++c) sum += a[first + c] * x[c];
-    out[r] = sum;
-  }
-}
-
 double dot(const double* a, const double* b, Eigen::Index size) {
   double sum = 0;
   for (Eigen::Index i = 0; i < size; ++i) sum += a[i] * b[i];
@@ -132,7 +121,7 @@ void NonlinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   output_.leftCols(q) = -constraint_.topRows(nd) * stiffness / velocity_scale_;
   output_.rightCols(q) = -constraint_.topRows(nd) * damping;
   output_push_ = constraint_.topRows(nd);
-  direct_ = inputs_.force.isZero(0) ? RowMajor(0, n) : RowMajor(constraint_.topRows(nd) * pushed);
+  direct_ = inputs_.force.isZero(0) ? RowMatrix(0, n) : RowMatrix(constraint_.topRows(nd) * pushed);
   force_now_ = force_middle_ = force_end_ =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(forces_.size()));
   for (Slope* k : {&k1_, &k2_, &k3_, &k4_})
@@ -254,7 +243,7 @@ void NonlinearBuilding::advance_part(double h) {
 }
 
 void NonlinearBuilding::flow(const Eigen::VectorXd& state, Eigen::VectorXd& out) const {
-  multiply(half_.data(), state.data(), out.data(), half_.rows(), half_.cols(), 0, half_.cols());
+  multiply(half_, state.data(), out.data(), 0, half_.cols());
   const double half_s = step_s_ / parts_ / 2;
   const Eigen::Index n = inputs_.influence.cols();
   for (Eigen::Index i = state.size() - 2 * n; i < state.size() - n; ++i) {
@@ -264,8 +253,7 @@ void NonlinearBuilding::flow(const Eigen::VectorXd& state, Eigen::VectorXd& out)
 }
 
 void NonlinearBuilding::carry(const Eigen::VectorXd& accel, Eigen::VectorXd& out) const {
-  multiply(half_.data(), accel.data(), out.data(), half_.rows(), half_.cols(), accel.size(),
-           accel.size());
+  multiply(half_, accel.data(), out.data(), accel.size(), accel.size());
 }
 
 void NonlinearBuilding::evaluate(double time_s, const Eigen::VectorXd& state,
@@ -303,8 +291,7 @@ void NonlinearBuilding::update_accel() {
   for (std::size_t i = 0; i < forces_.size(); ++i)
     applied_n_[forces_[i].dof] += force_now_[static_cast<Eigen::Index>(i)];
   evaluate(time_s_, state_, z_, force_now_, k1_);
-  multiply(output_.data(), state_.data(), accel_abs_.data(), output_.rows(), output_.cols(), 0,
-           2 * q);
+  multiply(output_, state_.data(), accel_abs_.data(), 0, 2 * q);
   for (Eigen::Index r = 0; r < accel_abs_.size(); ++r)
     accel_abs_[r] += dot(output_push_.data() + r * q, k1_.accel.data(), q);
   if (direct_.rows() > 0) accel_abs_ += direct_ * state_.segment(2 * q, direct_.cols());

@@ -46,8 +46,6 @@ class NonlinearBuilding : public DrivenBuilding {
   [[nodiscard]] bool resume(const std::vector<double>& motion) override;
 
  private:
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
   /// A law in independent coordinates.
   struct Law {
     Eigen::VectorXd b;     ///< deformation = b'q
@@ -84,10 +82,10 @@ class NonlinearBuilding : public DrivenBuilding {
   double part_start_s_ = 0;
   double velocity_scale_ = 1;  ///< 1/s; displacements are stored times this, which balances L
   Eigen::MatrixXd constraint_;
-  RowMajor half_;         ///< 2 coordinates x (state, inputs, their slope): over half a part
-  RowMajor output_;       ///< degrees of freedom x state
-  RowMajor output_push_;  ///< degrees of freedom x coordinates: accelerations from the coordinates'
-  RowMajor direct_;       ///< degrees of freedom x inputs: immediate effect of forces
+  RowMatrix half_;         ///< 2 coordinates x (state, inputs, their slope): over half a part
+  RowMatrix output_;       ///< degrees of freedom x state
+  RowMatrix output_push_;  ///< degrees of freedom x coordinates: their accelerations
+  RowMatrix direct_;       ///< degrees of freedom x inputs: immediate effect of forces
   std::vector<Law> placed_;
   std::vector<Eigen::VectorXd> force_push_;
   Eigen::VectorXd state_;  ///< scaled coordinates, their velocities, inputs, their slope

@@ -69,7 +69,7 @@ std::vector<ResponseChannel> response_channels(const Structure& structure,
         add(structure.dof(axis.story, f), weights[static_cast<std::size_t>(f)]);
       continue;
     }
-    const Direction along = axis.frame >= 0 ? structure.direction(axis.frame) : axis.direction;
+    const Direction along = direction_of(structure, axis);
     const double angle = axis.plan ? axis.plan->angle_rad : along == Direction::x ? 0 : M_PI / 2;
     const int base = structure.degrees_of_freedom();  // the ground does not turn
     if (axis.plan || along == Direction::x) add(base, std::cos(angle));

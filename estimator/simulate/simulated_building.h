@@ -5,10 +5,23 @@
 
 #include <Eigen/Core>
 
+#include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
+
+/// Computes out = a * x for `columns` columns of a, from `first` on, explicitly because Eigen's
+/// product is many times slower in a debug build.
+inline void multiply(const RowMatrix& a, const double* x, double* out, Eigen::Index first,
+                     Eigen::Index columns) {
+  const double* row = a.data() + first;
+  for (Eigen::Index r = 0; r < a.rows(); ++r, row += a.cols()) {
+    double sum = 0;
+    for (Eigen::Index c = 0; c < columns; ++c) sum += row[c] * x[c];
+    out[r] = sum;
+  }
+}
 
 /// A building that is shaken in steps of step_s(), starting at rest.
 class SimulatedBuilding {

@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <deque>
@@ -20,17 +19,13 @@ namespace framewatch::estimator {
 template <typename T>
 concept PlainState = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// Types with state. archive() lists every member that outlives a call; the same list serves for
-/// writing and for reading. Members that the constructor derives from the configuration are left
-/// out, and so are members that are computed anew before they are read.
-template <typename T, typename Archive>
-concept Archived = requires(T& value, Archive& archive) {
-  value.archive(archive);
-};
-
 /// The common part of StateWriter and StateReader: divides a value into plain ones. Derived defines
 /// plain(T&), block(std::vector<T>&, bool any_size) and count(std::size_t), which returns the size
 /// to use.
+///
+/// A type with state has archive(), which lists every member that outlives a call; the same list
+/// serves for writing and for reading. Members that the constructor derives from the configuration
+/// are left out, and so are members that are computed anew before they are read.
 ///
 /// State comes from a file, so every value is checked as it is read. A vector keeps its number of
 /// elements. Numbers that index or filter are archived with the functions below, which state their
@@ -234,13 +229,8 @@ class SavedByVirtual {
   virtual ~SavedByVirtual() = default;
   virtual void save(StateWriter& state) = 0;
   virtual void load(StateReader& state) = 0;
-  template <typename Archive>
-  void archive(Archive& a) {
-    if constexpr (Archive::kReading)
-      load(a);
-    else
-      save(a);
-  }
+  void archive(StateWriter& state) { save(state); }
+  void archive(StateReader& state) { load(state); }
 };
 
 }  // namespace framewatch::estimator

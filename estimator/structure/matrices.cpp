@@ -42,11 +42,16 @@ std::vector<Element> elements(const Structure& s, const ParameterTable& table) {
   return all;
 }
 
+Eigen::VectorXd frame_masses(const Structure& s) {
+  Eigen::VectorXd out(s.degrees_of_freedom());
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f) out[s.dof(story, f)] = s.frame_mass(story, f);
+  return out;
+}
+
 Matrices assemble(const Structure& s, const ParameterTable& table, const Eigen::VectorXd& theta) {
   const int nd = s.degrees_of_freedom();
-  Matrices out{Eigen::VectorXd(nd), Eigen::MatrixXd::Zero(nd, nd), Eigen::MatrixXd::Zero(nd, nd)};
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f) out.mass[s.dof(story, f)] = s.frame_mass(story, f);
+  Matrices out{frame_masses(s), Eigen::MatrixXd::Zero(nd, nd), Eigen::MatrixXd::Zero(nd, nd)};
   for (const Element& e : elements(s, table)) {
     const double k = theta[e.stiffness];
     const double c = theta[e.stiffness + table.elements()];
@@ -79,10 +84,10 @@ Eigen::MatrixXd floor_constraint(const Structure& s) {
     motions.row(l) << 1, 0, -(y[static_cast<std::size_t>(l)] - y.back() / 2);
   for (int j = 0; j < s.m(); ++j)
     motions.row(s.n() + j) << 0, 1, x[static_cast<std::size_t>(j)] - x.back() / 2;
+  const Eigen::VectorXd masses = frame_masses(s);
   std::vector<Eigen::VectorXd> columns;
   for (int story = 1; story <= s.stories; ++story) {
-    Eigen::VectorXd mass(f);
-    for (int i = 0; i < f; ++i) mass[i] = s.frame_mass(story, i);
+    const Eigen::VectorXd mass = masses.segment(s.dof(story, 0), f);
     std::vector<Eigen::VectorXd> basis;
     for (int c = 0; c < 3; ++c) {
       Eigen::VectorXd v = motions.col(c);

@@ -26,6 +26,9 @@ struct Element {
 /// Returns all elements in the order of the stiffness half of theta.
 std::vector<Element> elements(const Structure& structure, const ParameterTable& table);
 
+/// Returns the mass of every frame on every floor, kg, by degree of freedom.
+Eigen::VectorXd frame_masses(const Structure& structure);
+
 /// Mass (diagonal, kg), damping and stiffness of M y'' + C y' + K y = -M r a_g. Degrees of freedom
 /// are story-major (Structure::dof). Source: equations (4)-(12) of the paper, misprints corrected.
 struct Matrices {

@@ -76,7 +76,7 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
       add("frame", "its frame does not exist");
       continue;
     }
-    const Direction along = a.frame >= 0 ? s.direction(a.frame) : a.direction;
+    const Direction along = direction_of(s, a);
     if (a.horizontal()) (a.story == 0 ? base : above).insert(along);
     if (a.vertical) continue;
     if (a.plan) {
@@ -109,6 +109,20 @@ std::vector<std::uint8_t> identifying(const std::vector<SensorAxis>& axes) {
   std::vector<std::uint8_t> out;
   for (const SensorAxis& axis : axes) out.push_back(axis.check ? 0 : 1);
   return out;
+}
+
+std::vector<std::size_t> shaken_axes(const std::vector<SensorAxis>& axes) {
+  std::vector<std::size_t> base, all;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    if (!axes[a].horizontal()) continue;
+    all.push_back(a);
+    if (axes[a].story == 0) base.push_back(a);
+  }
+  return base.empty() ? all : base;
+}
+
+Direction direction_of(const Structure& s, const SensorAxis& axis) {
+  return axis.frame >= 0 ? s.direction(axis.frame) : axis.direction;
 }
 
 std::vector<double> noise_densities(const std::vector<SensorAxis>& axes) {

@@ -46,6 +46,9 @@ struct SensorAxis {
   bool horizontal() const { return !is_force && !vertical; }
 };
 
+/// Returns the direction that an axis measures: that of its frame, if it is on one.
+Direction direction_of(const Structure& structure, const SensorAxis& axis);
+
 /// Returns "x" or "y", or "z" for a vertical axis.
 inline const char* letter(const SensorAxis& axis) {
   return axis.vertical ? "z" : letter(axis.direction);
@@ -61,6 +64,8 @@ std::vector<double> noise_densities(const std::vector<SensorAxis>& axes);
 std::vector<std::uint8_t> identifying(const std::vector<SensorAxis>& axes);
 /// Returns true if any axis is a force. Without base axes the base is then at rest.
 bool has_force(const std::vector<SensorAxis>& axes);
+/// Returns the accelerometers along x or y of the base; without any, those of all floors.
+std::vector<std::size_t> shaken_axes(const std::vector<SensorAxis>& axes);
 /// Returns the accelerometers along x or y, in their order.
 std::vector<SensorAxis> horizontals(const std::vector<SensorAxis>& axes);
 

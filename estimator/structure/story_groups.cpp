@@ -47,10 +47,6 @@ void add_motion(const Structure& s, Direction direction, double at_m, double sha
   add(upper, share * part);
 }
 
-bool measures(const Structure& s, const SensorAxis& axis, Direction direction) {
-  return (axis.frame >= 0 ? s.direction(axis.frame) : axis.direction) == direction;
-}
-
 /// Returns true if the axes of every measured floor show both translations and the rotation.
 bool shows_rotation(const Structure& s, const std::vector<SensorAxis>& axes) {
   for (int story = 1; story <= s.stories; ++story) {
@@ -124,7 +120,7 @@ void add_rigid_groups(const Structure& s, const std::vector<SensorAxis>& axes, D
                       std::vector<StoryGroup>& out) {
   const Line line = lines_of(s, direction);
   const std::vector<int> floors =
-      floors_where(s, axes, [&](const SensorAxis& a) { return measures(s, a, direction); });
+      floors_where(s, axes, [&](const SensorAxis& a) { return direction_of(s, a) == direction; });
   if (rotation_shown && line.count == 2) {
     for (int f = line.first; f < line.first + 2; ++f)
       add_groups(s, direction, {f}, floors, wanted, out);

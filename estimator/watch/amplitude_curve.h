@@ -81,8 +81,7 @@ class AmplitudeBins {
   double excess() const;
   bool any() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.finite(first_log_);
     a(bins_);
   }
@@ -100,8 +99,7 @@ class AmplitudeBins {
     double weight = 0, log = 0, off = 0;  ///< weighted sums
     double log_square = 0, off_square = 0, log_off = 0;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.within(count, 0, a.kMaxCount);
       a.finite(weight, log, off, log_square, off_square, log_off);
     }
@@ -125,8 +123,7 @@ class RecentAmplitude {
   /// Returns the largest remembered amplitude; 0: there is no amplitude yet.
   double at(double time_s) const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.within(count_, 0, static_cast<double>(kMax));
     a.finite(time_s_, amplitude_);
   }

@@ -6,9 +6,9 @@
 
 namespace framewatch::estimator {
 Baseline::Baseline(std::size_t parameters)
-    : value(parameters, std::numeric_limits<double>::quiet_NaN()),
-      std_error(parameters, std::numeric_limits<double>::quiet_NaN()),
-      degc(parameters, std::numeric_limits<double>::quiet_NaN()),
+    : value(parameters, kNaN),
+      std_error(parameters, kNaN),
+      degc(parameters, kNaN),
       by_amplitude(parameters) {}
 
 std::vector<double> Baseline::flat_points() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/identify/estimate/estimate.h"
+#include "estimator/numeric/nan.h"
 #include "estimator/watch/amplitude_curve.h"
 #include "estimator/watch/watched.h"
 
@@ -37,12 +38,11 @@ struct Baseline {
   /// Reads by_amplitude from flat_points(). Returns false when `numbers` are invalid.
   [[nodiscard]] bool take_points(const std::vector<double>& numbers);
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     for (std::vector<double>* of : {&value, &std_error, &degc}) a.any_size(*of);
     std::vector<double> points = flat_points();
     a.any_size(points);
-    if constexpr (Archive::kReading)
+    if (a.kReading)
       if (!take_points(points)) a.refuse();
   }
 };
@@ -61,9 +61,14 @@ class BaselineLearner {
   /// amplitude: learn values by amplitude, too.
   BaselineLearner(const std::vector<Watched>& watched, double learn_s, bool amplitude = true);
 
+  /// Returns a learner that averages any number of windows.
+  static BaselineLearner of_any_windows(std::size_t parameters) {
+    return {std::vector<Watched>(parameters), std::numeric_limits<double>::infinity()};
+  }
+
   /// Adds a window. degc: its temperature; NaN: unknown. Returns true when it completed a
   /// parameter.
-  bool push(const WindowEstimate& estimate, double degc = std::numeric_limits<double>::quiet_NaN());
+  bool push(const WindowEstimate& estimate, double degc = kNaN);
   /// Returns the total length of the windows so far, s, whether or not they had values.
   double seconds() const { return windows_.seconds(); }
   /// Returns the completed parameters.
@@ -72,10 +77,7 @@ class BaselineLearner {
   /// inexact.
   Baseline so_far() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(windows_, sums_, recent_);
-  }
+  void archive(auto& a) { a(windows_, sums_, recent_); }
 
  private:
   struct Sum {
@@ -88,8 +90,7 @@ class BaselineLearner {
     int with_amplitude = 0;  ///< of count
     AmplitudeBins bins;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a(complete);
       a.within(count, 0, a.kMaxCount);
       a.within(with_amplitude, 0, count);

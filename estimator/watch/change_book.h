@@ -62,8 +62,7 @@ class ChangeBook {
   /// Returns the record of an element or of ChangeRecord::kEverything; null if it has no record.
   const ChangeRecord* record(int parameter) const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(detectors_, of_all_, histories_, scatter_, records_, gate_);
     a.within(last_id_, 0, a.kMaxCount);
     for (const Record& r : records_)
@@ -79,8 +78,7 @@ class ChangeBook {
     Time until{};           ///< windows that begin before are in the size
     Time found{}, first{};  ///< end of the window that found it; start of the evidence
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.within(id, 0, a.kMaxCount);
       a.within(state, 0, static_cast<double>(ChangeState::measured));
       a(parameter, change, detector, young, size, until, found, first);

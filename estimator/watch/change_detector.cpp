@@ -70,7 +70,7 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   Parameter& parameter = parameters_[p];
   const double error = e.std_error[p] / baseline_.value[p];
   const double baseline_error = baseline_.std_error[p] / baseline_.value[p];
-  const double window_s = std::chrono::duration<double>(e.end - e.start).count();
+  const double window_s = seconds_of(e.end - e.start);
   double& usual = parameter.usual_error;
   // Windows across a change have large errors; they must not hide the next ones.
   const double most = kMaxOfUsual * usual;

@@ -63,10 +63,7 @@ class ChangeDetector {
   /// baseline; 0: no values yet.
   double usual_error(int parameter) const { return of(parameter).usual_error; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(parameters_, used_until_);
-  }
+  void archive(auto& a) { a(parameters_, used_until_); }
 
  private:
   struct Track {
@@ -74,8 +71,7 @@ class ChangeDetector {
     double weight = 0, off = 0;  ///< of the windows since the sum was zero
     Time since{};
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.finite(sum, weight, off);
       a(since);
     }
@@ -92,8 +88,7 @@ class ChangeDetector {
     std::array<std::array<Tracks, kSeries>, 2> away;  ///< downward, upward
     std::array<double, kSeries> back{};               ///< evidence that a change has ended
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.finite(usual_error, back);
       a.within(errors, 0, a.kMaxCount);
       a.within(sign, -1, 1);

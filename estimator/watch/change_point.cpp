@@ -52,7 +52,7 @@ double left_by_line(const std::vector<WindowValue>& values, std::size_t skipped)
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i == skipped || !std::isfinite(values[i].value) || !(values[i].std_error > 0)) continue;
     const double w = 1 / (values[i].std_error * values[i].std_error);
-    const double x = std::chrono::duration<double>(values[i].start - values.front().start).count();
+    const double x = seconds_of(values[i].start - values.front().start);
     const double y = values[i].value - (std::isfinite(origin) ? origin : 0);
     weight += w, t += w * x, v += w * y, tt += w * x * x, tv += w * x * y, vv += w * y * y;
   }
@@ -62,7 +62,7 @@ double left_by_line(const std::vector<WindowValue>& values, std::size_t skipped)
 
 }  // namespace
 
-double ChangePoint::std_error() const {
+double ratio_error(const WindowMean& before, const WindowMean& after) {
   return std::hypot(after.std_error, after.value / before.value * before.std_error) /
          std::abs(before.value);
 }

@@ -21,6 +21,8 @@ struct WindowMean {
   double value = 0, std_error = 0;
   int count = 0;
 };
+/// Returns the standard error of the ratio of `after` to `before`.
+double ratio_error(const WindowMean& before, const WindowMean& after);
 /// Returns the mean of values `from` to `to` - 1; NaN if none of them has a value.
 WindowMean mean_of(const std::vector<WindowValue>& values, std::size_t from, std::size_t to);
 
@@ -31,8 +33,8 @@ struct ChangePoint {
   WindowMean before, after;
 
   double ratio() const { return after.value / before.value - 1; }
-  double std_error() const;  ///< of ratio()
-  double errors() const;     ///< size over its standard error
+  double std_error() const { return ratio_error(before, after); }  ///< of ratio()
+  double errors() const;                                           ///< size over its standard error
 };
 
 /// Returns the most significant division of a series into two parts with different means. The

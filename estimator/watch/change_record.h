@@ -14,8 +14,7 @@ struct Change {
   Time since{};               ///< the most likely instant of the change
   Time earliest{}, latest{};  ///< the interval in which it lies
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.finite(ratio, std_error);
     a(since, earliest, latest);
   }

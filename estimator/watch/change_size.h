@@ -38,8 +38,7 @@ class ChangeSize {
   /// Returns the variance of the windows over what their errors predict, >= kMinExcess.
   double excess() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     for (Mean* m : {&mean_, &aside_}) {
       a.within(m->count, 0, a.kMaxCount / 1e7);
       a.finite(m->weight, m->sum, m->square, m->common);
@@ -87,8 +86,7 @@ class UsualScatter {
   /// Returns the standard deviation of slow changes, relative to the baseline, >= 0.
   double slow() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(until_);
     a.within(group_, 0, kGroup);
     a.within(windows_, 0, a.kMaxCount);

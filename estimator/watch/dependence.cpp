@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/numeric/nan.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -48,7 +50,7 @@ DependenceLearner::DependenceLearner(int parameters, const DependenceOptions& op
     : options_(options), sums_(static_cast<std::size_t>(parameters)) {}
 
 double DependenceLearner::log_amplitude(const WindowEstimate& e, std::size_t p) {
-  return e.snr[p] > 0 ? std::log(e.snr[p]) / 2 : std::numeric_limits<double>::quiet_NaN();
+  return e.snr[p] > 0 ? std::log(e.snr[p]) / 2 : kNaN;
 }
 
 bool DependenceLearner::push(const WindowEstimate& e, double degc) {
@@ -146,7 +148,7 @@ void MeanTemperature::push(Time time, double degc) {
 
 double MeanTemperature::mean(Time start, Time end) const {
   const std::int64_t first = number_of(start), last = number_of(end);
-  double sum = 0, before = std::numeric_limits<double>::quiet_NaN();
+  double sum = 0, before = kNaN;
   int count = 0;
   std::int64_t newest = first - kHolds - 1;
   for (const Bin& bin : bins_) {

@@ -49,8 +49,7 @@ class Dependence {
   /// Returns the change from one temperature to another.
   Expected change(std::size_t parameter, double from_degc, double to_degc) const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     for (std::vector<double>* of : {&at_, &slope_, &covariance_}) a.any_size(*of);
   }
 
@@ -87,10 +86,7 @@ class DependenceLearner {
 
   static double log_amplitude(const WindowEstimate& estimate, std::size_t parameter);
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(windows_, sums_);
-  }
+  void archive(auto& a) { a(windows_, sums_); }
 
  private:
   struct Sum {
@@ -100,8 +96,7 @@ class DependenceLearner {
     std::array<double, 3> right{};
     double square = 0;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.within(count, 0, a.kMaxCount);
       a.finite(first, first_degc, first_log, normal, right, square);
     }
@@ -132,18 +127,14 @@ class MeanTemperature {
   /// newest valid one before; NaN if there is no such reading.
   double mean(Time start, Time end) const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(bins_);
-  }
+  void archive(auto& a) { a(bins_); }
 
  private:
   struct Bin {
     std::int64_t number = -1, count = 0;
     double sum = 0;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       for (std::int64_t* n : {&number, &count}) a.within(*n, -a.kMaxCount, a.kMaxCount);
       a.finite(sum);
     }

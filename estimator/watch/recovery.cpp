@@ -2,7 +2,6 @@
 #include "estimator/watch/recovery.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -28,10 +27,6 @@ constexpr double kBendPerDecade = 0.3;
 constexpr double kMisfit = 3;
 /// Fewest points of a part of the record that is fitted alone.
 constexpr std::size_t kMinPoints = 4;
-
-double seconds_from_to(Time from, Time to) {
-  return std::chrono::duration<double>(to - from).count();
-}
 
 /// Returns the mean of log10(t) from `from_s` >= 0 to `to_s` > from_s.
 double mean_log(double from_s, double to_s) {
@@ -98,8 +93,8 @@ void Recovery::push(const RecoveryWindow& w) {
   if (!active_ || w.source >= kSources || !(w.std_error > 0) || !std::isfinite(w.off)) return;
   if (w.start < last_end_[w.source]) return;
   last_end_[w.source] = w.end;
-  newest_s_ = std::max(newest_s_, seconds_from_to(began_, w.end));
-  const double log = mean_log(seconds_from_to(began_, w.start), seconds_from_to(began_, w.end));
+  newest_s_ = std::max(newest_s_, seconds_of(w.end - began_));
+  const double log = mean_log(seconds_of(w.start - began_), seconds_of(w.end - began_));
   const auto place = std::clamp(kBinsPerDecade * log, 0.0, static_cast<double>(kBins) - 0.5);
   Bin& bin = bins_[w.source * kBins + static_cast<std::size_t>(place)];
   const double weight = 1 / (w.std_error * w.std_error);
@@ -115,7 +110,7 @@ void Recovery::push(const RecoveryWindow& w) {
 }
 
 bool Recovery::is_of(Time since) const {
-  const double after_s = seconds_from_to(began_, since);
+  const double after_s = seconds_of(since - began_);
   return active_ && after_s >= -kMotion_s && after_s <= kRenew_s[0];
 }
 
@@ -315,7 +310,7 @@ void Recovery::judge(const Fit& fit, RecoveryLaw& law) const {
 
 bool Recovery::renewal_due(Time now) {
   if (!active_ || renewed_ >= kRenew_s.size()) return false;
-  const double since_s = seconds_from_to(began_, now);
+  const double since_s = seconds_of(now - began_);
   if (since_s < kRenew_s[renewed_] || newest_s_ <= (renewed_ > 0 ? kRenew_s[renewed_ - 1] : 0))
     return false;
   while (renewed_ < kRenew_s.size() && since_s >= kRenew_s[renewed_]) ++renewed_;

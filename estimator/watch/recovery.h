@@ -115,8 +115,7 @@ class Recovery {
   /// Returns true once for each of kRenew_s, when `now` is beyond it and a window has come since.
   bool renewal_due(Time now);
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(active_, began_, last_end_, bins_);
     a.within(renewed_, 0, static_cast<double>(kRenew_s.size()));
     a.finite(newest_s_);
@@ -132,8 +131,7 @@ class Recovery {
     double weight = 0, log = 0, off = 0, amplitude = 0, baseline = 0;
     double log_square = 0, log_off = 0, off_square = 0;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.within(count, 0, a.kMaxCount);
       a.finite(weight, log, off, amplitude, baseline, log_square, log_off, off_square);
     }

@@ -2,7 +2,6 @@
 #include "estimator/watch/recovery_watch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -17,11 +16,7 @@ constexpr double kRemember = 0.05;  // weight of the newest window in the usual 
 }  // namespace
 
 StrongMotion::StrongMotion(const std::vector<SensorAxis>& axes, double rate_hz)
-    : mean_step_(2 * std::numbers::pi * kMean_hz / rate_hz) {
-  for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story == 0 && axes[a].horizontal()) axes_.push_back(a);
-  for (std::size_t a = 0; a < axes.size() && (axes_.empty() || axes[axes_[0]].story != 0); ++a)
-    if (axes[a].horizontal()) axes_.push_back(a);
+    : axes_(shaken_axes(axes)), mean_step_(2 * std::numbers::pi * kMean_hz / rate_hz) {
   mean_.assign(axes_.size(), 0);
   seen_.assign(axes_.size(), 0);
 }
@@ -36,7 +31,7 @@ void StrongMotion::push(const SampleSet& set) {
     most = std::max(most, std::abs(accel - mean_[i]));
   }
   if (most <= kTrigger_mps2) return;
-  const bool goes_on = any_ && std::chrono::duration<double>(set.time - last_).count() < kCalm_s;
+  const bool goes_on = any_ && seconds_of(set.time - last_) < kCalm_s;
   peak_ = goes_on ? std::max(peak_, most) : most;
   any_ = true;
   last_ = set.time;
@@ -65,7 +60,7 @@ void RecoveryWatch::push(const WindowEstimate& e, bool long_window, const Watch&
   due_.clear();
   if ((e.window != 0 && !long_window) || e.status != WindowStatus::valid) return;
   if (strong.any() && strong.last() != ended_ && e.start >= strong.last()) {
-    const double since_s = std::chrono::duration<double>(strong.last() - ended_).count();
+    const double since_s = seconds_of(strong.last() - ended_);
     if (peak_mps2_ == 0 || since_s > kLawHolds_s ||
         strong.peak_mps2() >= kAftershock * peak_mps2_) {
       peak_mps2_ = strong.peak_mps2();

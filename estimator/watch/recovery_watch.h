@@ -28,8 +28,7 @@ class StrongMotion {
   Time last() const { return last_; }
   double peak_mps2() const { return peak_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(any_, last_);
     a.finite(peak_, mean_, seen_);
   }
@@ -63,8 +62,7 @@ class RecoveryWatch {
   /// since.
   const Recovery* of(int parameter) const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(recoveries_, usual_m_, ended_);
     a.finite(peak_mps2_);
   }

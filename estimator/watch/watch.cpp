@@ -2,7 +2,6 @@
 #include "estimator/watch/watch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -143,7 +142,7 @@ const std::vector<Alarm>& Watch::push(const WindowEstimate& given) {
   const auto window = static_cast<std::size_t>(given.window);
   if (window > windows_s_.size() || given.late) return none_;
   const bool quiet = window == windows_s_.size();
-  const double length_s = std::chrono::duration<double>(given.end - given.start).count();
+  const double length_s = seconds_of(given.end - given.start);
   if (!quiet && length_s < kWhole * windows_s_[window]) return none_;
   const WindowEstimate& estimate = quiet ? given : certain(given);
   const std::vector<Alarm>* news = &none_;

@@ -79,18 +79,16 @@ class Watch {
 
   /// The state has two parts: what was learned, and the changes detected since. Reading the second
   /// part is optional. After reading, call resumed().
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     archive_learned(a);
     archive_detection(a);
-    if constexpr (Archive::kReading) resumed();
+    if (a.kReading) resumed();
   }
-  template <typename Archive>
-  void archive_learned(Archive& a) {
+  void archive_learned(auto& a) {
     bool temperature = options_.temperature, amplitude = options_.amplitude;
     a(temperature, amplitude, learner_, baseline_);
     a(quiet_known_, quiet_learner_, quiet_baseline_, dependence_);
-    if constexpr (Archive::kReading) {
+    if (a.kReading) {
       const std::size_t n = watched_.size();
       const bool fits = (baseline_.is_of(0) || baseline_.is_of(n)) &&
                         (!quiet_known_ || (quiet_baseline_.is_of(n) && dependence_.is_of(n)));
@@ -100,10 +98,7 @@ class Watch {
       other_conditions_ = temperature != options_.temperature || amplitude != options_.amplitude;
     }
   }
-  template <typename Archive>
-  void archive_detection(Archive& a) {
-    a(temperature_, book_, recent_, usual_);
-  }
+  void archive_detection(auto& a) { a(temperature_, book_, recent_, usual_); }
   /// Restarts learning the quiet baseline if it was learned for other conditions than these options
   /// correct for.
   void resumed() {
@@ -116,8 +111,7 @@ class Watch {
     std::int64_t count = 0;
     double sum = 0;
 
-    template <typename Archive>
-    void archive(Archive& a) {
+    void archive(auto& a) {
       a.within(count, 0, a.kMaxCount);
       a.finite(sum);
     }

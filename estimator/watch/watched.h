@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 
 #include "estimator/identify/estimate/estimate.h"
 
 namespace framewatch::estimator {
-
-/// Returns the seconds since the epoch of the sensor clock.
-inline double seconds_of(Time time) {
-  return std::chrono::duration<double>(time.time_since_epoch()).count();
-}
-
-inline double seconds_of(SensorClock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
 
 /// The limits by which one parameter is watched for changes.
 struct Watched {
@@ -44,16 +34,13 @@ class SeparateWindows {
     seconds_ += length_s(e);
     return true;
   }
-  static double length_s(const WindowEstimate& e) {
-    return std::chrono::duration<double>(e.end - e.start).count();
-  }
+  static double length_s(const WindowEstimate& e) { return seconds_of(e.end - e.start); }
   /// Returns the total length of the selected windows, s.
   double seconds() const { return seconds_; }
   /// Returns true if `count` > 0 windows are at least half of the selected ones.
   bool most(int count) const { return count > 0 && 2 * count >= count_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.within(count_, 0, a.kMaxCount);
     a.within(seconds_, 0, a.kMaxCount);
     a(end_);

@@ -44,8 +44,7 @@ class WindowHistory {
   /// size() if there is no such window.
   std::size_t first(std::size_t parameter, Time from) const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.within(count_, 0, static_cast<double>(kMax));
     a(start_, end_);
     a.finite(off_, std_error_, common_error_);

@@ -19,6 +19,7 @@
 
 #include "daemon/base/clocks.h"
 #include "drivers/lcm/message_check.h"
+#include "estimator/numeric/quantile.h"
 #include "fleet/view/overview.h"
 #include "fleet/view/rows.h"
 
@@ -239,9 +240,7 @@ Point joined(const std::vector<Point>& points, std::size_t from, std::size_t to)
     out.q3 = std::isnan(out.q3) ? p.q3 : std::max(out.q3, p.q3);
   }
   if (medians.empty()) return out;
-  const auto middle = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 2);
-  std::nth_element(medians.begin(), middle, medians.end());
-  out.median = *middle;
+  out.median = estimator::upper_median(medians);
   out.std_error = std::sqrt(squares / static_cast<double>(medians.size()));
   return out;
 }

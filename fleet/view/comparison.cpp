@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
+#include "estimator/numeric/quantile.h"
 #include "fleet/view/rows.h"
 
 namespace framewatch::fleet {
@@ -20,14 +21,8 @@ namespace {
 constexpr double kOfNormal = 1.4826;  // standard deviation over median absolute deviation
 constexpr double kByChance = 0.05;
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
 using daemon::kSecond_us;
+using estimator::mean_median;
 
 /// Kinds 2 and 3 of parameter_table_t are damping.
 bool is_stiffness(std::int32_t kind) {
@@ -88,13 +83,13 @@ Level level_of(std::span<const float> medians, std::span<const float> std_errors
   if (medians.empty()) return {};
   Level out;
   out.periods = static_cast<int>(medians.size());
-  out.value = median_of({medians.begin(), medians.end()});
+  out.value = mean_median({medians.begin(), medians.end()});
   std::vector<double> away;
   for (const float m : medians) away.push_back(std::abs(static_cast<double>(m) - out.value));
   double squares = 0;
   for (const float e : std_errors) squares += static_cast<double>(e) * static_cast<double>(e);
   const auto periods = static_cast<double>(medians.size());
-  const double s = std::max(std::sqrt(squares / periods), kOfNormal * median_of(std::move(away)));
+  const double s = std::max(std::sqrt(squares / periods), kOfNormal * mean_median(std::move(away)));
   out.std_error = std::sqrt(0.5 * std::numbers::pi / periods) * s;
   return out;
 }

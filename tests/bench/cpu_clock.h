@@ -3,9 +3,10 @@
 
 #include <ctime>
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
+
+#include "estimator/numeric/quantile.h"
 
 namespace framewatch::bench {
 
@@ -30,16 +31,14 @@ inline double cpu_clock_cost_us() {
     const double before = cpu_us();
     cost.push_back(cpu_us() - before);
   }
-  std::nth_element(cost.begin(), cost.begin() + 500, cost.end());
-  return cost[500];
+  return estimator::upper_median(cost);
 }
 
 /// Value below which `share` of them lie.
 inline double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
+  const double rank = share * static_cast<double>(values.size() - 1);
+  return estimator::ranked(values, static_cast<std::size_t>(rank));
 }
 
 }  // namespace framewatch::bench

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "tests/earthquake/change_tables.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "estimator/numeric/quantile.h"
 #include "tests/earthquake/coverage.h"
-#include "tests/earthquake/quantile.h"
 
 namespace framewatch::earthquake {
 namespace {
@@ -106,12 +105,12 @@ std::string found_table(const Scores& scores) {
       unchanged += c.score.unchanged, neighbours += c.score.neighbours;
     });
     if (delays.empty()) continue;
-    out += fmt::format("| {} | {} | {} | {} | {} | {:.1f} | {} | {} of {}, {} |\n", line.title,
-                       delays.size(), percent(found / static_cast<double>(delays.size()), 0),
-                       seconds(quantile(delays, 0.5)), seconds(quantile(delays, 0.9)),
-                       found > 0 ? said / static_cast<double>(found) : 0.0, withdrawn, neighbours,
-                       unchanged,
-                       percent(unchanged > 0 ? neighbours / static_cast<double>(unchanged) : NAN));
+    out += fmt::format(
+        "| {} | {} | {} | {} | {} | {:.1f} | {} | {} of {}, {} |\n", line.title, delays.size(),
+        percent(found / static_cast<double>(delays.size()), 0),
+        seconds(estimator::quantile(delays, 0.5)), seconds(estimator::quantile(delays, 0.9)),
+        found > 0 ? said / static_cast<double>(found) : 0.0, withdrawn, neighbours, unchanged,
+        percent(unchanged > 0 ? neighbours / static_cast<double>(unchanged) : NAN));
   }
   return out;
 }
@@ -140,8 +139,8 @@ std::string sizes_table(const Scores& scores) {
     const Coverage c = scores.coverage(all, t);
     out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {:.2f} |\n", time_name(kAfter_s[t]),
                        errors.size(), withdrawn, unsized, with_error(c),
-                       percent(quantile(errors, 0.5), 2), percent(quantile(stated, 0.5), 2),
-                       c.rms_of_errors());
+                       percent(estimator::quantile(errors, 0.5), 2),
+                       percent(estimator::quantile(stated, 0.5), 2), c.rms_of_errors());
   }
   return out;
 }
@@ -259,7 +258,7 @@ std::vector<Demand> change_demands(const std::vector<ScoredCase>& cases, double 
   out.push_back({fmt::format("sizes that stay within two earlier errors: {} of {} elements",
                              s.steady, s.elements),
                  s.elements > 0 && s.elements - s.steady <= kMaxMoved * s.elements});
-  const double median_s = quantile(delays, 0.5);
+  const double median_s = estimator::quantile(delays, 0.5);
   if (std::isfinite(most_delay_s))
     out.push_back({fmt::format("median time to the first announcement {} s, {:.2f} s at most",
                                seconds(median_s), most_delay_s),

@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
+#include "estimator/numeric/quantile.h"
 #include "tests/earthquake/coverage.h"
-#include "tests/earthquake/quantile.h"
 
 namespace framewatch::earthquake {
 namespace {
@@ -120,7 +120,7 @@ std::string first_table(const Run& run, const std::vector<Line>& lines) {
       "| shown |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
   for (const Line& line : lines) {
     const auto at = [&](int window, double FirstWindow::*what, double share) {
-      return seconds(quantile(run.firsts(line.chosen, window, what), share));
+      return seconds(estimator::quantile(run.firsts(line.chosen, window, what), share));
     };
     out += fmt::format(
         "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", line.title,
@@ -156,8 +156,8 @@ std::string error_table(const Run& run, const std::vector<Line>& lines) {
         });
         const double share = wanted > 0 ? static_cast<double>(k.size()) / wanted : 0;
         out += k.empty() ? " - |"
-                         : fmt::format(" {}, {} ({:.0f} %) |", percent(quantile(k, 0.5)),
-                                       percent(quantile(c, 0.5)), 100 * share);
+                         : fmt::format(" {}, {} ({:.0f} %) |", percent(estimator::quantile(k, 0.5)),
+                                       percent(estimator::quantile(c, 0.5)), 100 * share);
       }
     out += "\n";
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <functional>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "estimator/numeric/quantile.h"
 #include "tests/study/study_score.h"
 
 namespace framewatch::study {
@@ -33,8 +33,7 @@ class Bounds {
 
   void median(const std::string& what, std::vector<double> values, double limit, bool at_least) {
     if (values.empty()) return;
-    std::sort(values.begin(), values.end());
-    const double measured = values[values.size() / 2];
+    const double measured = estimator::upper_median(values);
     add(what, limit, at_least, measured, fmt::format("{:.1f} %", 100 * measured));
   }
 

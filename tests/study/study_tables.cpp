@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "estimator/numeric/quantile.h"
 #include "tests/study/study_score.h"
 
 namespace framewatch::study {
@@ -24,8 +25,7 @@ int count(const Group& group, const std::function<bool(const Outcome&)>& holds) 
 
 std::string median(std::vector<double> values, const char* unit = "") {
   if (values.empty()) return "-";
-  std::sort(values.begin(), values.end());
-  return fmt::format("{:.1f}{}", 100 * values[values.size() / 2], unit);
+  return fmt::format("{:.1f}{}", 100 * estimator::upper_median(values), unit);
 }
 
 std::string removed(const Group& group) {

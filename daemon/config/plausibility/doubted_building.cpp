@@ -17,6 +17,7 @@
 #include "daemon/base/toml_document.h"
 #include "daemon/config/plausibility/plausible_limits.h"
 #include "estimator/numeric/eigenvalues.h"
+#include "estimator/numeric/quantile.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "estimator/structure/structure.h"
@@ -125,8 +126,7 @@ void doubt_unequal_stories(const TomlValue& section, const char* key, const esti
   const auto [least, most] = std::minmax_element(stories.begin(), stories.end());
   if (!(*most > kMaxUnequalStories * *least)) return;
   std::vector<double> sorted = stories;
-  std::nth_element(sorted.begin(), sorted.begin() + s.stories / 2, sorted.end());
-  const double usual = sorted[static_cast<std::size_t>(s.stories / 2)];
+  const double usual = estimator::upper_median(sorted);
   const auto odd = *most / usual > usual / *least ? most : least;
   doubts.push_back(
       {place_in(section, key, static_cast<std::size_t>(odd - stories.begin()), stories.size()),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/accuracy_trial.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,6 +8,7 @@
 
 #include "daemon/tools/lab/study_buildings.h"
 #include "estimator/motion/svd_denoise.h"
+#include "estimator/numeric/quantile.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"
 #include "estimator/simulate/sensor_model.h"
@@ -137,11 +137,7 @@ void collect_errors(const std::vector<estimator::WindowEstimate>& windows,
 }
 
 double ErrorStatistics::quantile(double probability) const {
-  if (relative_error.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> sorted = relative_error;
-  std::sort(sorted.begin(), sorted.end());
-  const double place = probability * static_cast<double>(sorted.size() - 1);
-  return sorted[static_cast<std::size_t>(std::llround(place))];
+  return estimator::quantile(relative_error, probability);
 }
 
 void ErrorStatistics::add(const ErrorStatistics& other) {

@@ -11,6 +11,7 @@
 #include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/eigenvalues.h"
+#include "estimator/numeric/quantile.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/structure/natural_frequencies.h"
 
@@ -114,10 +115,7 @@ double signal_ratio(const Plant& plant, const RecordSegment& s) {
       ratios.push_back(std::sqrt(s.spectrum.row(a).squaredNorm() /
                                  (static_cast<double>(s.bins() * s.intervals()) * s.variance[a])));
   std::erase_if(ratios, [](double ratio) { return std::isnan(ratio); });
-  if (ratios.empty()) return 0;
-  const auto middle = ratios.begin() + std::ssize(ratios) / 2;
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return *middle;
+  return upper_median(ratios, 0);
 }
 
 }  // namespace

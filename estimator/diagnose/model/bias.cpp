@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "estimator/numeric/quantile.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -142,9 +143,7 @@ void remove_common(const Plant& plant, Means& means) {
     for (Index i = 0; i < means.value.rows(); ++i) {
       std::vector<double> values;
       for (const Index b : alike) values.push_back(means.value(i, b));
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      own(i, a) -= *middle;
+      own(i, a) -= upper_median(values);
     }
   }
   means.value = own;
@@ -169,15 +168,12 @@ std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index 
   for (Index a = 0; a < plant.axis_count(); ++a)
     if (a != axis) others.push_back(fitted(a).ramp.rms);
   if (others.empty()) return std::nullopt;
-  std::nth_element(others.begin(), others.begin() + static_cast<long>(others.size() / 2),
-                   others.end());
   const Fit own = fitted(axis);
   const double rms =
       std::sqrt(s.accel.col(axis).squaredNorm() / static_cast<double>(s.accel.rows()));
-  const bool stands_out =
-      own.significance > (few ? kOfFew : kSignificance) &&
-      own.ramp.rms > (few ? kLargeShare : kMinShare) * rms &&
-      own.ramp.rms > (few ? kFarBeyond : kBeyondOthers) * others[others.size() / 2];
+  const bool stands_out = own.significance > (few ? kOfFew : kSignificance) &&
+                          own.ramp.rms > (few ? kLargeShare : kMinShare) * rms &&
+                          own.ramp.rms > (few ? kFarBeyond : kBeyondOthers) * upper_median(others);
   return stands_out ? std::optional<Ramp>(own.ramp) : std::nullopt;
 }
 

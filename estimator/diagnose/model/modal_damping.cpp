@@ -6,6 +6,7 @@
 
 #include "estimator/diagnose/model/model.h"
 #include "estimator/numeric/eigenvalues.h"
+#include "estimator/structure/matrices.h"
 
 namespace framewatch::estimator {
 
@@ -78,9 +79,7 @@ std::vector<std::size_t> modes_in_band(const Plant& plant, const Model& model,
 
 MatrixXd relative_motion(const Plant& plant) {
   const Structure& s = plant.structure;
-  VectorXd mass(s.degrees_of_freedom());
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f) mass[s.dof(story, f)] = s.frame_mass(story, f);
+  const VectorXd mass = frame_masses(s);
   const MatrixXd of_ground = plant.constraint.transpose() * mass.asDiagonal() * plant.ground;
   return plant.motion - plant.mass.cwiseInverse().asDiagonal() * of_ground;
 }

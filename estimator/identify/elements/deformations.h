@@ -16,8 +16,7 @@ struct DeformationSet {
   std::vector<double> values;       ///< in the order that the MotionSource defines
   std::vector<std::uint8_t> known;  ///< flags of the measured places, in the same order
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.finite(values);
     a.each_within(known, 0, 1);
   }

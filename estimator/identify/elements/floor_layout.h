@@ -44,6 +44,8 @@ class FloorLayout {
   int unknowns() const { return floors_ * own(); }
   /// Returns the theta index of unknown `position` (0..own-1) of a floor. Floors count from 0.
   int parameter(int floor, int position) const;
+  /// Returns the theta index of unknown 0..unknowns()-1.
+  int parameter_of(int unknown) const { return parameter(unknown / own(), unknown % own()); }
   ParameterKind kind(int position) const { return kind_[static_cast<std::size_t>(position)]; }
   /// Returns the entry of b_e at frame f of the floor, docs/equations.md (2) and (3), for the
   /// element e of front unknown `position`.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "estimator/numeric/quantile.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::estimator {
@@ -52,7 +53,7 @@ void retuned_design(const FloorLayout& layout, const ParameterTable& table,
     const auto i = static_cast<std::size_t>(u);
     if (shown[i] == 0 || !(ratio[i] > 0)) continue;
     const double moved = trusted_ratio(ratio[i], std_error[i] / ratio[i]);
-    const int parameter = layout.parameter(u / layout.own(), u % layout.own());
+    const int parameter = layout.parameter_of(u);
     work.factor[static_cast<std::size_t>(parameter)] =
         std::clamp(moved, 1 / kLargestStep, kLargestStep);
   }
@@ -61,10 +62,7 @@ void retuned_design(const FloorLayout& layout, const ParameterTable& table,
     for (int p = 0; p < table.size(); ++p)
       if (table[p].kind == kind && work.factor[static_cast<std::size_t>(p)] > 0)
         work.seen.push_back(work.factor[static_cast<std::size_t>(p)]);
-    if (work.seen.empty()) return otherwise;
-    const auto middle = work.seen.begin() + static_cast<std::ptrdiff_t>(work.seen.size() / 2);
-    std::nth_element(work.seen.begin(), middle, work.seen.end());
-    return *middle;
+    return upper_median(work.seen, otherwise);
   };
   const double frame_stiffness = median(ParameterKind::frame_stiffness, 1);
   const double frame_damping = median(ParameterKind::frame_damping, 1);

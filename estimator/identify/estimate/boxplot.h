@@ -19,8 +19,7 @@ class BoxplotWindow {
   void push(double value);
   BoxplotStatistics statistics() const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(ring_, sorted_, guide_);
     a.within(next_, 0, static_cast<double>(ring_.size()));
     a.within(count_, 0, static_cast<double>(ring_.size()));

@@ -35,10 +35,7 @@ struct BoxplotStatistics {
   int outliers = 0;
   int count = 0;  ///< number of windows in the statistics
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(q1, median, q3, whisker_low, whisker_high, outliers, count);
-  }
+  void archive(auto& a) { a(q1, median, q3, whisker_low, whisker_high, outliers, count); }
 };
 
 /// The result of one window. Vectors follow the parameter table; entries that are not observable
@@ -74,8 +71,7 @@ struct WindowEstimate {
   /// The solution of the normal equations before the gate, SI. For studies; never published.
   std::vector<double> solution;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(start, end);
     a.within(sequence, -1, a.kMaxCount);
     a.within(status, 0, static_cast<double>(WindowStatus::nothing_identifiable));
@@ -115,8 +111,7 @@ struct ModelFit {
   std::vector<double> error;         ///< all of these; at least 1 if the model does not fit
   std::vector<FitWord> word;
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(start, end);
     a.within(sequence, -1, a.kMaxCount);
     a(misfit, design_error, misfit_error, corner_error, error);

@@ -111,8 +111,7 @@ class SlidingGram {
                ? nullptr
                : &blocks_ring_[static_cast<std::size_t>(number) * shape_.size];
   }
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.within(pushed_, 0, a.kMaxCount);
     a.finite(current_, middle_, next_middle_, blocks_ring_, suffixes_, stored_rows_);
     a(spans_, forward_);
@@ -146,10 +145,7 @@ class SlidingGram {
     int blocks, every;
     std::vector<double> next, sum;
 
-    template <typename Archive>
-    void archive(Archive& a) {
-      a.finite(next, sum);
-    }
+    void archive(auto& a) { a.finite(next, sum); }
   };
   std::vector<Span> spans_;
   std::vector<double> blocks_ring_;      ///< held blocks x state

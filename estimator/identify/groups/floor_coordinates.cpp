@@ -90,8 +90,7 @@ FloorCoordinates floor_coordinates(const Structure& s, const std::vector<SensorA
   Eigen::VectorXd mass(s.frames());
   for (int f = 0; f < s.frames(); ++f) mass[f] = s.frame_mass(story, f);
   const Eigen::MatrixXd m = motions.transpose() * mass.asDiagonal() * motions;
-  Eigen::MatrixXd read(out.measured, motions.cols());
-  for (int r = 0; r < out.measured; ++r) read.row(r) = seen.row(rows[static_cast<std::size_t>(r)]);
+  const Eigen::MatrixXd read = seen(rows, Eigen::all);
   const Eigen::MatrixXd carried = solve_lu(m, Eigen::MatrixXd(read.transpose()));
   const Eigen::MatrixXd basis = orthogonal_basis(read.transpose());
   Eigen::MatrixXd change(motions.cols(), motions.cols());
@@ -162,24 +161,18 @@ FloorCoordinates base_coordinates(const Structure& s, const std::vector<SensorAx
     if ((c == 0 ? s.n() : s.m()) > 0 && at.size() > 0 &&
         seen.col(c).cwiseAbs().maxCoeff() > kIndependent)
       shown.push_back(c);
-  const auto columns = [](const Eigen::MatrixXd& m, const std::vector<Eigen::Index>& which) {
-    Eigen::MatrixXd out(m.rows(), static_cast<Eigen::Index>(which.size()));
-    for (std::size_t i = 0; i < which.size(); ++i)
-      out.col(static_cast<Eigen::Index>(i)) = m.col(which[i]);
-    return out;
-  };
   std::vector<Eigen::Index> turning = shown;
   turning.push_back(2);
   const double reach = std::max(middle_x, middle_y);
-  Eigen::MatrixXd scaled = columns(seen, turning);
+  Eigen::MatrixXd scaled = seen(Eigen::all, turning);
   if (reach > 0) scaled.rightCols(1) /= reach;
   if (!shown.empty() && reach > 0 && independent_rows(scaled).size() == turning.size())
     shown = turning;
   FloorCoordinates out;
   out.measured = static_cast<int>(shown.size());
-  out.frames = columns(frames, shown);
+  out.frames = frames(Eigen::all, shown);
   out.from_axes = shown.empty() ? Eigen::MatrixXd::Zero(0, static_cast<Eigen::Index>(axes.size()))
-                                : weights(columns(seen, shown), at, axes.size());
+                                : weights(seen(Eigen::all, shown), at, axes.size());
   return out;
 }
 

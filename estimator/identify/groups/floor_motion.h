@@ -35,12 +35,11 @@ class FloorMotion {
   const Eigen::VectorXd& theta() const { return theta_; }
   const std::vector<std::uint8_t>& present() const { return present_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     for (Eigen::Index i = 0; i < theta_.size(); ++i)
       a.within(theta_[i], std::numeric_limits<double>::min(), a.kMax);
     a.each_within(present_, 0, 1);
-    if constexpr (Archive::kReading) form();
+    if (a.kReading) form();
     for (Inner& inner : inner_) a.finite(inner.state, inner.input_before);
     a(expected_index_);
   }

@@ -34,17 +34,6 @@ std::vector<double> by_rows(const Eigen::MatrixXd& m) {
   return out;
 }
 
-Eigen::MatrixXd columns_of(const Eigen::MatrixXd& m, const std::vector<int>& which) {
-  Eigen::MatrixXd out(m.rows(), static_cast<Eigen::Index>(which.size()));
-  for (std::size_t i = 0; i < which.size(); ++i)
-    out.col(static_cast<Eigen::Index>(i)) = m.col(which[i]);
-  return out;
-}
-
-Eigen::MatrixXd rows_of(const Eigen::MatrixXd& m, const std::vector<int>& which) {
-  return columns_of(m.transpose(), which).transpose();
-}
-
 std::vector<int> not_zero_rows(const Eigen::MatrixXd& m) {
   std::vector<int> out;
   for (Eigen::Index i = 0; i < m.rows(); ++i)
@@ -105,7 +94,7 @@ class Builder {
                       not_zero_rows(whole.transpose()),
                       {}};
       if (part.rows.empty()) continue;
-      part.matrix = by_columns(rows_of(columns_of(whole, part.columns), part.rows));
+      part.matrix = by_columns(whole(part.rows, part.columns));
       out.parts.push_back(std::move(part));
     }
     out.by_value = rows(at_ends_.transpose() * b_.constant_stiffness * at_ends_);
@@ -185,11 +174,11 @@ class Builder {
                          b_.mass.block(set.first, 0, set.size, b_.measured).cwiseAbs();
     out.ends = not_zero_rows(Eigen::MatrixXd(coupled).transpose());
     out.rows = rows_at(out.ends);
-    out.from_second = by_columns(-rows_of(inertia, out.ends).transpose());
-    out.from_first = by_columns(-rows_of(friction, out.ends).transpose());
+    out.from_second = by_columns(-inertia(out.ends, Eigen::all).transpose());
+    out.from_first = by_columns(-friction(out.ends, Eigen::all).transpose());
     out.damping = by_columns(damping);
-    const Eigen::MatrixXd row_inertia = rows_of(rows(inertia), out.rows);
-    const Eigen::MatrixXd row_friction = rows_of(rows(friction), out.rows);
+    const Eigen::MatrixXd row_inertia = rows(inertia)(out.rows, Eigen::all);
+    const Eigen::MatrixXd row_friction = rows(friction)(out.rows, Eigen::all);
     out.inertia = by_columns(row_inertia);
     out.friction = by_columns(row_friction);
     Eigen::MatrixXd read(row_inertia.rows(), 3 * modes);
@@ -202,9 +191,9 @@ class Builder {
       if (force.isZero(0)) continue;
       Eigen::MatrixXd on_modes(modes, modes + static_cast<Eigen::Index>(out.ends.size()));
       on_modes << shapes.transpose() * force,
-          rows_of(at_ends_.transpose() * force, out.ends).transpose();
+          Eigen::MatrixXd(at_ends_.transpose() * force)(out.ends, Eigen::all).transpose();
       out.forces.push_back({static_cast<int>(p), b_.damping[p] != 0, by_columns(on_modes),
-                            by_columns(rows_of(rows(at_ends_.transpose() * force), out.rows))});
+                            by_columns(rows(at_ends_.transpose() * force)(out.rows, Eigen::all))});
     }
     return out;
   }

@@ -89,8 +89,7 @@ class GroupChain {
   void step(const double* motion, const FloorRows& sections, double* out);
 
   /// Archives the state. Call start() before reading, because it sets the sizes.
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     for (Inner& inner : inner_) a.finite(inner.state, inner.forces_before, inner.derivatives);
     a.finite(s1_, s2_);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "estimator/identify/elements/deformations.h"
+#include "estimator/identify/noise/floor_noise.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/numeric/kernels.h"
 
@@ -25,19 +26,6 @@ constexpr double kStiffnessWeight = 2, kDampingWeight = 1;
 
 std::size_t count_of(int count) {
   return static_cast<std::size_t>(count);
-}
-
-std::vector<double> response(const std::vector<double>& taps, const HighPass& high_pass,
-                             std::size_t length) {
-  std::vector<double> passed(length, 0.0), out(length, 0.0);
-  for (std::size_t t = 0; t < length; ++t) {
-    const auto x = [&](std::size_t age) { return t == age ? 1.0 : 0.0; };
-    const auto y = [&](std::size_t age) { return t >= age ? passed[t - age] : 0.0; };
-    passed[t] =
-        high_pass.gain * (x(0) - 2 * x(1) + x(2)) - high_pass.a1 * y(1) - high_pass.a2 * y(2);
-    for (std::size_t k = 0; k < taps.size() && k <= t; ++k) out[t] += taps[k] * passed[t - k];
-  }
-  return out;
 }
 
 }  // namespace
@@ -87,7 +75,7 @@ GroupTuning::GroupTuning(const PipelineConfig& config, const EstimatorOptions& o
       o.rate_hz * (kDecay / o.high_pass_hz + std::max(o.settle_s, kLongestSettle_s)));
   for (const std::vector<double>* taps :
        {&triple.value, &triple.first, &triple.second, &triple.held_first, &triple.held_second})
-    impulse_.push_back(response(*taps, high_pass, length));
+    impulse_.push_back(impulse_response(*taps, high_pass, length));
   set_axes(present_, ratios_);
   tune(0);
 }

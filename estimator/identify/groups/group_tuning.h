@@ -62,8 +62,7 @@ class GroupTuning : public RowTuning {
   const GroupEquations& equations() const { return equations_; }
 
  private:
-  template <typename Archive>
-  void members(Archive& a) {
+  void members(auto& a) {
     for (Eigen::Index i = 0; i < theta0_.size(); ++i)
       a.within(theta0_[i], std::numeric_limits<double>::min(), a.kMax);
     for (Eigen::Index i = 0; i < ratios_.theta.size(); ++i)
@@ -72,7 +71,7 @@ class GroupTuning : public RowTuning {
     a.finite(noise_density_);
     a.each_within(present_, 0, 1);
     a.within(tuned_parts_, 0, a.kMaxCount);
-    if constexpr (Archive::kReading) restore();
+    if (a.kReading) restore();
   }
   /// Recomputes everything that follows from the parameters, up to the tuned parts.
   void restore();
@@ -126,12 +125,11 @@ class GroupFilter : public RowFilter {
   void load(StateReader& state) override { members(state); }
 
  private:
-  template <typename Archive>
-  void members(Archive& a) {
+  void members(auto& a) {
     a.within(settle_, 0, a.kMaxCount);
     a.within(settling_, 0, a.kMaxCount);
     a.finite(rows_);
-    if constexpr (Archive::kReading) start();
+    if (a.kReading) start();
     a(chain_, past_, starting_);
   }
   void start();

@@ -55,9 +55,7 @@ Eigen::MatrixXd shapes_of(const InnerSet& set, int measured, double hinge_factor
   const Eigen::Index kept = std::min<Eigen::Index>(kShapes, n);
   Eigen::MatrixXd out(n, kept + static_cast<Eigen::Index>(moved.size()));
   out.leftCols(kept) = modes.vectors.rightCols(kept);
-  Eigen::MatrixXd ends(n, static_cast<Eigen::Index>(moved.size()));
-  for (std::size_t i = 0; i < moved.size(); ++i)
-    ends.col(static_cast<Eigen::Index>(i)) = coupling.col(moved[i]);
+  const Eigen::MatrixXd ends = coupling(Eigen::all, moved);
   out.rightCols(ends.cols()) = Cholesky(stiffness).solve(ends);
   for (Eigen::Index i = 0; i < out.cols(); ++i) out.col(i).normalize();
   return out;
@@ -233,11 +231,11 @@ void add_forces(const Structure& s, const std::vector<SensorAxis>& axes, const C
 
 Eigen::MatrixXd mass_of(const Structure& s, const std::vector<SensorAxis>& axes,
                         const Coordinates& c) {
+  const Eigen::VectorXd masses = frame_masses(s);
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(c.total, c.total);
   for (int story = 1; story <= s.stories; ++story) {
     const auto l = static_cast<std::size_t>(story);
-    Eigen::VectorXd frames(s.frames());
-    for (int f = 0; f < s.frames(); ++f) frames[f] = s.frame_mass(story, f);
+    const Eigen::VectorXd frames = masses.segment(s.dof(story, 0), s.frames());
     const Eigen::MatrixXd& motion = c.floor[l].frames;
     const Eigen::MatrixXd m = motion.transpose() * frames.asDiagonal() * motion;
     for (Eigen::Index i = 0; i < m.rows(); ++i)
@@ -406,7 +404,7 @@ bool shows_groups(const Structure& s, const std::vector<SensorAxis>& axes,
     driven = driven || axes[a].is_force;
     base_has_axes = base_has_axes || (axes[a].story == 0 && axes[a].horizontal());
     if (present[a] == 0 || !axes[a].horizontal()) continue;
-    const Direction along = axes[a].frame >= 0 ? s.direction(axes[a].frame) : axes[a].direction;
+    const Direction along = direction_of(s, axes[a]);
     (axes[a].story == 0 ? base : above)[along == Direction::x ? 0 : 1] = true;
   }
   const bool rests = driven && !base_has_axes;

@@ -26,10 +26,7 @@ class AxisNoise {
   /// `used` that the rows should be reweighted.
   bool differs(const std::vector<double>& now, const std::vector<double>& used) const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(meter_);
-  }
+  void archive(auto& a) { a(meter_); }
 
  private:
   std::vector<double> given_;  ///< 0: not configured

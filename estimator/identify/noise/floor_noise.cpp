@@ -64,10 +64,6 @@ void set_noise_density(FloorNoise& noise, const std::vector<double>& density, do
   }
 }
 
-namespace {
-
-/// Returns the response of the high-pass and one tap set to a unit impulse. `length` covers the
-/// decay of the high-pass.
 std::vector<double> impulse_response(const std::vector<double>& taps, const HighPass& hp,
                                      std::size_t length) {
   std::vector<double> high(length), out(length, 0.0);
@@ -83,8 +79,6 @@ std::vector<double> impulse_response(const std::vector<double>& taps, const High
     for (std::size_t k = 0; k < taps.size() && k <= t; ++k) out[t] += taps[k] * high[t - k];
   return out;
 }
-
-}  // namespace
 
 NoiseFilter::NoiseFilter(const DerivativeTriple& triple, const HighPass& high_pass,
                          std::size_t length) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,10 +22,7 @@ struct FloorNoise {
   Eigen::MatrixXd covariance;   ///< covariance of the deformations, front unknowns x front unknowns
   std::vector<bool> damping;    ///< by unknown: multiplies a rate, not a deformation
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a.finite(variance, covariance);
-  }
+  void archive(auto& a) { a.finite(variance, covariance); }
 };
 
 /// Returns the noise of a floor. noise_density: of every axis, m/s^2/sqrt(Hz).
@@ -33,6 +31,11 @@ FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformatio
 
 /// Updates variance and covariance for other densities of the same axes, without allocating.
 void set_noise_density(FloorNoise& noise, const std::vector<double>& density, double rate_hz);
+
+/// Returns the response of the high-pass and one tap set to a unit impulse. `length` covers the
+/// decay of the high-pass.
+std::vector<double> impulse_response(const std::vector<double>& taps, const HighPass& high_pass,
+                                     std::size_t length);
 
 /// Second moments of a regressor filter's outputs for white acceleration noise of variance 1: g00 =
 /// var p, g11 = var p', g22 = var p'', g20 = cov(p'', p). docs/equations.md (14).

@@ -55,8 +55,7 @@ struct FloorRows {
   std::vector<double> share_error;
   double noise_residual = 0;  ///< expected weighted squared residual per instant
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(rows);
     for (std::vector<double>* values :
          {&gain, &a1, &a2, &frequency_hz, &beta, &response, &noise_energy, &noise_diagonal,

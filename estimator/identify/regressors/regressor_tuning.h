@@ -63,8 +63,7 @@ class RegressorTuning : public RowTuning {
   void save(StateWriter& state) override { archive(state); }
   void load(StateReader& state) override { archive(state); }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.finite(theta0_, noise_density_);
     a(noise_, rows_);
     for (int floor = 0; floor < layout_->floors(); ++floor)
@@ -144,8 +143,7 @@ class RegressorFilter : public RowFilter {
   void load(StateReader& state) override { members(state); }
 
  private:
-  template <typename Archive>
-  void members(Archive& a) {
+  void members(auto& a) {
     a.within(settle_, 0, a.kMaxCount);
     a.each_within(known_, 0, 1);
     a.finite(rows_);

@@ -41,12 +41,11 @@ class UnknownPast {
   /// rows than shapes; such rows must not be used.
   bool remove(double* rows);
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.within(equations_, 0, kMaxEquations);
     a.within(instants_, 0, a.kMaxCount);
     if (!(equations_ >= 0 && equations_ <= kMaxEquations)) equations_ = 0;
-    if constexpr (Archive::kReading)
+    if (a.kReading)
       if (equation_.size() < static_cast<std::size_t>(equations_))
         equation_.resize(static_cast<std::size_t>(equations_));
     for (std::size_t i = 0; i < static_cast<std::size_t>(equations_); ++i) archive(a, equation_[i]);
@@ -62,11 +61,10 @@ class UnknownPast {
     std::vector<double> fitted;       ///< shapes x stride: Q^T of the rows
     std::vector<double> shape;        ///< buffer of one call
   };
-  template <typename Archive>
-  void archive(Archive& a, Equation& e) {
+  void archive(auto& a, Equation& e) {
     auto poles = static_cast<int>(e.poles.size());
     a.within(poles, 0, kMaxPoles);
-    if constexpr (Archive::kReading) {
+    if (a.kReading) {
       if (!a.good()) return;
       e.poles.resize(static_cast<std::size_t>(poles >= 0 && poles <= kMaxPoles ? poles : 0));
       resize(e);

@@ -52,8 +52,7 @@ class NoiseCompensation {
   }
 
   /// rows: the filter that formed the rows.
-  template <typename Archive>
-  void archive(Archive& a, const RowFilter& rows) {
+  void archive(auto& a, const RowFilter& rows) {
     for (std::size_t f = 0; f < floor_.size(); ++f) {
       std::uint8_t origin = rows.origin_of(static_cast<int>(f), floor_[f].rows);
       a(origin);
@@ -99,10 +98,7 @@ class ModelMisfit {
   /// variance: the unknown's entry in the inverse of the normal matrix.
   double error(int unknown, double variance) const;
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a.finite(excess_, force_);
-  }
+  void archive(auto& a) { a.finite(excess_, force_); }
 
  private:
   int lowest_floor(int unknown) const;

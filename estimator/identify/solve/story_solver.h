@@ -29,10 +29,7 @@ class StoryFactor {
   }
   int row_stride(int floor) const { return padded(layout_.front(floor)); }
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(values_);
-  }
+  void archive(auto& a) { a(values_); }
 
   /// Solve one floor of N X = right in place. right: unknowns x columns, row-major, columns a
   /// multiple of kLane. Call forward() from the lowest floor to the highest, then backward() down
@@ -55,10 +52,7 @@ class InverseDiagonal {
   /// highest.
   void step(const StoryFactor& factor, int floor, double* diagonal);
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(inverse_, coupled_, middle_, transposed_);
-  }
+  void archive(auto& a) { a(inverse_, coupled_, middle_, transposed_); }
 
  private:
   FloorLayout layout_;
@@ -91,10 +85,7 @@ class StorySolver {
   /// Exchanges the factor for another one, which the next factor() overwrites.
   void swap_factor(StoryFactor& other) { factor_.swap(other); }
 
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(x_, information_, usable_, response_energy_, residual_energy_);
-  }
+  void archive(auto& a) { a(x_, information_, usable_, response_energy_, residual_energy_); }
 
  private:
   void gather_information(const WindowParts& sums, int floor);

@@ -82,8 +82,7 @@ class BatchMeans {
   const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
 
   /// rows, sums: those of the pass in progress, if any.
-  template <typename Archive, typename Sums>
-  void archive(Archive& a, const RowFilter& rows, const Sums& sums) {
+  void archive(auto& a, const RowFilter& rows, const auto& sums) {
     a.within(next_step_, 0, steps());
     a(factor_, inverse_, noise_level_, columns_values_, solution_, score_scale_);
     a(prior_, prior_doubt_, inverse_diagonal_, new_error_, new_share_, new_noise_share_);
@@ -151,8 +150,7 @@ class MassErrors {
   const std::vector<double>& error() const { return error_; }
 
   /// shape, sums: those of the pass in progress, if any.
-  template <typename Archive>
-  void archive(Archive& a, const GramShape& shape, const std::vector<double>& sums) {
+  void archive(auto& a, const GramShape& shape, const std::vector<double>& sums) {
     a.within(next_step_, 0, 2 * layout_.floors());
     a(factor_, columns_, new_error_);
     a.finite(tolerance_, error_);

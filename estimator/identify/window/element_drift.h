@@ -38,8 +38,7 @@ class ElementDrift {
   int elements() const { return static_cast<int>(elements_.size()); }
   int block_rows() const { return block_rows_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a.finite(s1_, s2_, sums_);
     a.each_within(was_known_, 0, 1);
     a(past_);

@@ -156,8 +156,7 @@ void LongWindow::block_closed(SlidingGram& sums, const std::vector<std::uint8_t>
   const double* block = sums.block(0);
   if (!(energy(block, false) > 0)) return;
   const double weight = which_ == Blocks::limited ? this->weight(block) : 1;
-  if (blocks_ == 0)
-    since_ = time - SensorClock::duration(std::llround((block_rows_ - 1) * 1e6 / rate_hz_));
+  if (blocks_ == 0) since_ = time - duration_of(block_rows_ - 1, rate_hz_);
   for (std::size_t i = 0; i < shape_.size; ++i) current_[i] += weight * block[i];
   const int* instants = sums.newest_instants();
   for (std::size_t f = 0; f < instants_.size(); ++f) instants_[f] += weight * instants[f];
@@ -264,7 +263,7 @@ HeldBending::HeldBending(const Structure& structure, const FloorLayout& layout,
     : window_(structure, layout, table, of_bending(options), block_rows, 0, noise_configured,
               LongWindow::Blocks::by_energy) {
   for (int u = 0; u < layout.unknowns(); ++u) {
-    const int p = layout.parameter(u / layout.own(), u % layout.own());
+    const int p = layout.parameter_of(u);
     if (table[p].kind == ParameterKind::frame_stiffness) stiffnesses_.push_back(u);
     if (table[p].kind == ParameterKind::bending_stiffness)
       held_.push_back({p, u, design[p], design_tolerance(table[p].kind)});

@@ -26,7 +26,6 @@ namespace framewatch::estimator {
 ///
 /// Nearly all of the expected sensor noise is subtracted, because its sum over an hour is hardly
 /// random.
-/// its sum is hardly random any more.
 class LongWindow {
  public:
   static constexpr double kMaxOfUsual = 10, kMaxOfUsualMisfit = 4, kCompensatedShare = 0.98;
@@ -79,8 +78,7 @@ class LongWindow {
                                            : &ring_[static_cast<std::size_t>(number) * shape_.size];
   }
 
-  template <typename Archive>
-  void archive(Archive& a, TunedRegression& regression) {
+  void archive(auto& a, TunedRegression& regression) {
     a.finite(ring_, current_, sum_, ring_instants_, instants_, usual_, usual_misfit_, fit_, rows_,
              ring_rows_);
     a(begins_, end_, since_);
@@ -168,8 +166,7 @@ class HeldBending {
   };
   const std::vector<Held>& held() const { return held_; }
 
-  template <typename Archive>
-  void archive(Archive& a, TunedRegression& regression) {
+  void archive(auto& a, TunedRegression& regression) {
     window_.archive(a, regression);
     for (Held& h : held_) {
       a.within(h.value, std::numeric_limits<double>::min(), a.kMax);

@@ -225,8 +225,7 @@ void ModelCheck::take_misfit(const Context& c) {
 const ModelFit& ModelCheck::give(const Context& c) {
   ++fit_.sequence;
   fit_.end = c.end;
-  fit_.start = c.end - SensorClock::duration(
-                           std::llround((window_rows_ - 1) * 1e6 / config_->options.rate_hz));
+  fit_.start = c.end - duration_of(window_rows_ - 1, config_->options.rate_hz);
   for (std::size_t p = 0; p < fit_.word.size(); ++p) {
     fit_.word[p] = fit_word(fit_.misfit[p]);
     if (fit_.word[p] == FitWord::unknown) continue;

@@ -49,8 +49,7 @@ class OtherCorner {
   /// Returns true after retuning, until restart(): there are no rows then.
   bool resting() const { return resting_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(*tuning_);
     a.within(next_part_, 0, a.kMaxCount);
     a(resting_);
@@ -111,8 +110,7 @@ class ModelCheck {
   /// Does one instant's share of the work. Returns the fit once a second, otherwise nullptr.
   const ModelFit* advance(const Context& context);
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     for (OtherCorner& corner : corners_) a(corner);
     a.within(phase_, 0, static_cast<double>(Phase::pausing));
     for (const OtherCorner& corner : corners_)
@@ -138,8 +136,7 @@ class ModelCheck {
   const ModelFit& give(const Context& context);
   /// Returns the parameter of an unknown in internal order.
   std::size_t parameter(int unknown) const {
-    return static_cast<std::size_t>(
-        layout_.parameter(unknown / layout_.own(), unknown % layout_.own()));
+    return static_cast<std::size_t>(layout_.parameter_of(unknown));
   }
 
   const PipelineConfig* config_;

@@ -70,8 +70,7 @@ class SelfTuning {
   bool tuned() const { return tuned_; }
   std::int64_t retunes() const { return retunes_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(*standby_, tuned_, noise_known_, noise_measured_, noise_differs_);
     a(lending_);
     a.within(phase_, 0, static_cast<double>(Phase::lent));

@@ -65,8 +65,7 @@ class SlidingWindowEstimator {
   std::int64_t interruptions() const { return interruptions_; }
   std::int64_t retunes() const { return self_tuning_ ? self_tuning_->retunes() : 0; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(integrator_, noise_, ring_, drift_, *active_);
     if (self_tuning_) a(*self_tuning_);
     series_.archive(a, *active_);
@@ -88,11 +87,10 @@ class SlidingWindowEstimator {
  private:
   /// Archives the long window separately, so that the rest can be read if the long window has
   /// another length or is absent.
-  template <typename Archive>
-  void archive_long(Archive& a) {
+  void archive_long(auto& a) {
     int rows = long_ ? long_->rows() : 0;
     std::vector<std::uint8_t> bytes;
-    if constexpr (Archive::kReading) {
+    if (a.kReading) {
       a(rows);
       a.any_size(bytes);
       if (!long_) return;

@@ -92,7 +92,7 @@ void SlidingWindowEstimator::check_tuning() {
 
 void SlidingWindowEstimator::regression_exchanged() {
   for (int u = 0; u < layout_.unknowns(); ++u) {
-    const int p = layout_.parameter(u / layout_.own(), u % layout_.own());
+    const int p = layout_.parameter_of(u);
     const double before = self_tuning_->before().tuning().theta0()[p];
     series_.main().rescale(u, before / theta0()[p]);
     retuned_by_[static_cast<std::size_t>(u)] = theta0()[p] / before;

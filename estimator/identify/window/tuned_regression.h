@@ -39,8 +39,7 @@ class MotionRing {
   }
   std::int64_t capacity() const { return static_cast<std::int64_t>(sets_.size()); }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(sets_);
     a.within(next_, 0, a.kMaxCount);
   }
@@ -89,8 +88,7 @@ class TunedRegression {
   SlidingGram& sums() { return sums_; }
   const RowFilter& rows() const { return *entering_; }
 
-  template <typename Archive>
-  void archive(Archive& a) {
+  void archive(auto& a) {
     a(*tuning_, resting_);
     if (resting_) return;
     a(*entering_, *delayed_, sums_, counting_);

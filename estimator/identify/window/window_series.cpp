@@ -2,7 +2,6 @@
 #include "estimator/identify/window/window_series.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace framewatch::estimator {
 
@@ -73,7 +72,7 @@ const WindowEstimate* OtherWindows::give(const Context& c) {
         c.drift->rms(p, rows_ / c.drift->block_rows());
   window.estimate.rows = rows_;
   window.estimate.end = end_;
-  window.estimate.start = end_ - SensorClock::duration(std::llround((rows_ - 1) * 1e6 / rate_hz_));
+  window.estimate.start = end_ - duration_of(rows_ - 1, rate_hz_);
   ++window.estimate.sequence;
   solved_ = false;
   next(c.regression->sums());
@@ -161,8 +160,7 @@ LateWindows::Given LateWindows::advance(TunedRegression& regression, const Motio
   if (!due || !regression.suffices()) return given;
   estimate_.end = window_end;
   estimate_.rows = regression.sums().rows();
-  estimate_.start =
-      window_end - SensorClock::duration(std::llround((estimate_.rows - 1) * 1e6 / rate_hz_));
+  estimate_.start = window_end - duration_of(estimate_.rows - 1, rate_hz_);
   ++estimate_.sequence;
   series_.main().fill({&regression.tuning().theta0(), &set.known, true}, estimate_);
   for (int p = 0; p < drift_.elements(); ++p)

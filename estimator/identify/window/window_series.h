@@ -45,8 +45,7 @@ class OtherWindows {
   const WindowEstimate* advance(const Context& context);
 
   /// regression: the active one.
-  template <typename Archive>
-  void archive(Archive& a, TunedRegression& regression) {
+  void archive(auto& a, TunedRegression& regression) {
     for (Window& window : windows_) {
       window.solution.archive(a, regression.rows(), regression.sums());
       a(window.estimate);
@@ -112,8 +111,7 @@ class WindowSeries {
   const WindowSolution& main() const { return main_; }
   WindowSolution& main() { return main_; }
 
-  template <typename Archive>
-  void archive(Archive& a, TunedRegression& regression) {
+  void archive(auto& a, TunedRegression& regression) {
     main_.archive(a, regression.rows(), regression.sums());
     others_.archive(a, regression);
   }
@@ -155,8 +153,7 @@ class LateWindows {
   Given advance(TunedRegression& regression, const MotionRing& ring,
                 const WindowSolution::Trust& trust, Time window_end);
 
-  template <typename Archive>
-  void archive(Archive& a, TunedRegression& regression) {
+  void archive(auto& a, TunedRegression& regression) {
     a(running_);
     a.within(estimate_.sequence, -1, a.kMaxCount);
     if (!running_) return;

@@ -44,7 +44,7 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       known_(static_cast<std::size_t>(layout.places()), 0),
       place_known_(static_cast<std::size_t>(layout.unknowns()), 0) {
   for (int u = 0; u < layout.unknowns(); ++u) {
-    const int parameter = layout.parameter(u / layout.own(), u % layout.own());
+    const int parameter = layout.parameter_of(u);
     const ParameterKind kind = table[parameter].kind;
     const double limit =
         kind == ParameterKind::frame_stiffness ? options.max_error_k

@@ -91,8 +91,7 @@ class WindowSolution {
   void fill(const Situation& situation, WindowEstimate& estimate);
 
   /// rows, sums: of the active regression.
-  template <typename Archive, typename Sums>
-  void archive(Archive& a, const RowFilter& rows, const Sums& sums) {
+  void archive(auto& a, const RowFilter& rows, const auto& sums) {
     noise_.archive(a, rows);
     errors_.archive(a, rows, sums);
     a.each_within(same_as_, 0, layout_.unknowns() - 1.0);

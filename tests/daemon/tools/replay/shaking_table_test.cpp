@@ -3,7 +3,6 @@
 // configuration. Reference: peaks of the measured transfer functions, 3.69, 11.2 and 16.6 Hz in the
 // Northridge run (the data's PROVENANCE.txt). docs/shaking-table.md discusses the numbers.
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -11,6 +10,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/tools/lab/data_files.h"
+#include "estimator/numeric/quantile.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/support/data.h"
@@ -22,11 +22,6 @@ struct Identified {
   std::vector<double> stiffness;  ///< N/m for 1 kg floors: median over published windows
   std::vector<double> mode_hz;
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 std::optional<drivers::Record> read_run(const std::string& run) {
   const auto data = test::data_path("");
@@ -57,7 +52,7 @@ Identified identify(const drivers::Record& record) {
   Eigen::VectorXd theta = Eigen::VectorXd::Ones(6);
   for (std::size_t i = 0; i < 3; ++i) {
     if (published[i].empty()) return {};
-    out.stiffness.push_back(median(published[i]));
+    out.stiffness.push_back(estimator::upper_median(published[i]));
     theta[static_cast<Eigen::Index>(i)] = out.stiffness.back();
   }
   out.mode_hz = natural_frequencies_hz(config->pipeline.structure, pipeline.parameters(), theta);

@@ -10,6 +10,7 @@
 
 #include "daemon/tools/lab/accuracy_trial.h"
 #include "daemon/tools/lab/study_buildings.h"
+#include "estimator/numeric/quantile.h"
 #include "estimator/simulate/ground_motion.h"
 #include "tests/support/pipeline_run.h"
 
@@ -45,9 +46,7 @@ struct Shaken {
     for (int p = 0; p < table.size(); ++p)
       if (table[p].kind == kind && (!chosen || chosen(p)))
         errors.push_back(std::abs(e.solution[static_cast<std::size_t>(p)] / truth[p] - 1));
-    std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2),
-                     errors.end());
-    return errors[errors.size() / 2];
+    return upper_median(errors);
   }
   Structure structure;
   ParameterTable table;
