@@ -25,21 +25,21 @@ class EffectOptions {
     all_.back().required = true;
     all_.back().choices = keep(names);
     add_place("story", integer, "Story of the frame story, panel, node or floor.");
-    all_.back().min = 1;
-    all_.back().max = 1000;
+    all_.back().range.min = 1;
+    all_.back().range.max = 1000;
     add_place("frame", text, "Name of the frame.");
     add_place("panel", text,
               "Floor panel, named after the frames where its spans start: \"x1y1\".");
     add_place("node", text, "Crossing of a y-parallel and an x-parallel frame: \"x1y1\".");
     add_place("to_story", integer, "Lower floor of two; 0 is the base.");
     all_.back().default_value = "0";
-    all_.back().min = 0;
-    all_.back().max = 1000;
+    all_.back().range.min = 0;
+    all_.back().range.max = 1000;
     add_place("direction", choice, "Direction, for effects of the whole building.");
     all_.back().choices = "x|y";
     add_place("mode", integer, "Mode, in the order of natural frequencies.");
-    all_.back().min = 1;
-    all_.back().max = 100000;
+    all_.back().range.min = 1;
+    all_.back().range.max = 100000;
     add_place("channel", text, "Name of the channel.");
     add_place("with_channel", text, "Name of the other channel.");
     for (const estimator::EffectDescription& d : estimator::effect_catalogue())
@@ -53,7 +53,6 @@ class EffectOptions {
 
   void add_place(std::string_view key, OptionType type, std::string_view meaning) {
     Option o;
-    o.section = "effect";
     o.key = key;
     o.type = type;
     o.meaning = meaning;
@@ -75,9 +74,9 @@ class EffectOptions {
 
 }  // namespace
 
-std::span<const Option> effect_options() {
+std::vector<OptionSection> effect_options() {
   static const EffectOptions kOptions;
-  return kOptions.options();
+  return {{"effect", kOptions.options()}};
 }
 
 }  // namespace framewatch::daemon

@@ -189,7 +189,8 @@ void ConfigSection::check_value(const Option& o, const TomlValue& value) {
 
 void ConfigSection::check_number(const Option& o, const TomlValue& value) {
   const double v = value.number;
-  const bool inside = std::isfinite(v) && v >= o.min && v <= o.max && (v > o.min || !o.above_min);
+  const bool inside = std::isfinite(v) && v >= o.range.min && v <= o.range.max &&
+                      (v > o.range.min || !o.range.above_min);
   if (!inside)
     report(o, value.place, fmt::format("must be {}, got {}", constraint(o), value.described()));
 }
