@@ -104,6 +104,11 @@ std::vector<double> numbers_in(const std::string& list) {
   return out;
 }
 
+const TomlValue* table_in(const TomlValue& document, std::string_view section) {
+  const TomlEntry* entry = document.find(section);
+  return entry ? &entry->value : nullptr;
+}
+
 }  // namespace
 
 ConfigSection::ConfigSection(std::string_view section, std::string label, const TomlValue* table,
@@ -130,6 +135,10 @@ ConfigSection::ConfigSection(std::string_view section, std::string label, const 
       report(o, where_, fmt::format("is missing, it has no default: {}", expected(o)));
   }
 }
+
+ConfigSection::ConfigSection(std::string_view section, const TomlValue& document,
+                             std::vector<TextProblem>& problems)
+    : ConfigSection(section, std::string(section), table_in(document, section), {1, 1}, problems) {}
 
 bool ConfigSection::is_subsection(std::string_view key) const {
   const std::string name = fmt::format("{}.{}", section_, key);
@@ -158,10 +167,9 @@ void ConfigSection::check_value(const Option& o, const TomlValue& value) {
       if (value.kind != TomlKind::text) return wrong_type();
       const std::vector<std::string> known = choices(o);
       if (std::find(known.begin(), known.end(), value.text) != known.end()) return;
-      const std::string meant = nearest(value.text, known);
       report(o, value.place,
              fmt::format("must be {}, got \"{}\"{}", constraint(o), value.text,
-                         meant.empty() ? "" : fmt::format(", did you mean \"{}\"?", meant)));
+                         did_you_mean(value.text, known, "\"")));
       return;
     }
     case OptionType::integer:

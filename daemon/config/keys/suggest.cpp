@@ -60,6 +60,12 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   return best;
 }
 
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates,
+                         const char* quote) {
+  const std::string meant = nearest(word, candidates);
+  return meant.empty() ? "" : fmt::format(", did you mean {}{}{}?", quote, meant, quote);
+}
+
 std::string advice_on_unknown_key(std::string_view section, std::string_view key) {
   std::vector<std::string> keys;
   for (const Option& option : options()) {

@@ -77,11 +77,6 @@ std::vector<CanBusReading> read_can_buses(const TomlValue& document, Config& con
 using drivers::DbcMessage;
 using drivers::DbcSignal;
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
-  const std::string meant = nearest(word, candidates);
-  return meant.empty() ? "" : fmt::format(", did you mean {}?", meant);
-}
-
 const DbcMessage* find_can_message(const CanBusReading& bus, const std::string& name) {
   const auto at = std::find_if(bus.messages.begin(), bus.messages.end(),
                                [&](const DbcMessage& m) { return m.name == name; });

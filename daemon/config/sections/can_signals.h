@@ -34,7 +34,5 @@ CanSignal find_can_signal(const CanBusReading& bus, const std::string& text);
 /// Returns the message, or null if `name` is unknown.
 const drivers::DbcMessage* find_can_message(const CanBusReading& bus, const std::string& name);
 std::string unknown_can_message(const CanBusReading& bus, const std::string& name);
-/// Returns ", did you mean X?" or an empty text.
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace framewatch::daemon
