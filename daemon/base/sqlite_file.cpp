@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 

@@ -5,7 +5,6 @@
 #include <functional>
 #include <list>
 #include <string>
-#include <utility>
 
 namespace CLI {
 class App;

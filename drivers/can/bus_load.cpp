@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "drivers/can/bus_load.h"
 
-#include <algorithm>
-
 namespace framewatch::drivers {
 namespace {
 

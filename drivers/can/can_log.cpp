@@ -8,7 +8,6 @@
 
 #include <fmt/core.h>
 
-#include "drivers/files/file_problems.h"
 #include "drivers/files/line_reader.h"
 
 namespace framewatch::drivers {

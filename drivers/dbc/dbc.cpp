@@ -4,17 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdint>
 #include <map>
-#include <optional>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
 
-#include "drivers/files/file_problems.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {

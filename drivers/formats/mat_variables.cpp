@@ -11,7 +11,6 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include <fmt/core.h>

@@ -2,9 +2,7 @@
 #include "daemon/config/keys/option_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <string>
 
 #include <fmt/core.h>
 

@@ -6,13 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 
-#include "daemon/base/toml_document.h"
 #include "daemon/config/keys/suggest.h"
 
 namespace framewatch::daemon {

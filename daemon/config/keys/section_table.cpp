@@ -2,11 +2,8 @@
 #include "daemon/config/keys/section_table.h"
 
 #include <cmath>
-#include <string>
 
 #include <fmt/core.h>
-
-#include "daemon/config/keys/option_table.h"
 
 namespace framewatch::daemon {
 namespace {

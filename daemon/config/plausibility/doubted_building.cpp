@@ -9,17 +9,13 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
-#include <Eigen/Core>
 
-#include "daemon/base/toml_document.h"
 #include "daemon/config/plausibility/plausible_limits.h"
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
-#include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "daemon/config/keys/can_options.h"
+#include "daemon/config/keys/suggest.h"
 #include "daemon/config/sections/can_signals.h"
 #include "daemon/config/sections/sections.h"
 #include "estimator/motion/acquisition.h"

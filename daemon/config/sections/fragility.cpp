@@ -2,9 +2,7 @@
 #include "daemon/config/sections/fragility.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
-#include <string>
 #include <string_view>
 #include <vector>
 
