@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-
 #include "drivers/can/can_map.h"
 
 namespace framewatch::drivers {

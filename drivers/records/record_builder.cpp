@@ -197,17 +197,13 @@ void RecordBuilder::fill_lost_samples(double step) {
 std::optional<Record> RecordBuilder::finish() {
   if (problems_.any()) return std::nullopt;
   const std::size_t least = expected_rate_hz_ > 0 ? 1 : 2;
-  if (rows() < least) {
-    problems_.add(
+  if (rows() < least)
+    return problems_.add(
         0, fmt::format("a record needs at least {} samples, this one has {}", least, rows()));
-    return std::nullopt;
-  }
   const double step = even_step();
-  if (step * kMaxRateHz < 1) {
-    problems_.add(
+  if (step * kMaxRateHz < 1)
+    return problems_.add(
         0, fmt::format("step {:.3g} s: rates above {:g} Hz are not supported", step, kMaxRateHz));
-    return std::nullopt;
-  }
   for (std::size_t i = 0; i < record_.names.size(); ++i) {
     const auto& values = record_.accel_mps2[i];
     const auto missing =

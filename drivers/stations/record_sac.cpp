@@ -141,33 +141,29 @@ std::optional<double> start_of(const SacHeader& header, FileProblems& problems) 
   if (!year || !day || !hour || !minute || !second) return std::nullopt;
   const int millisecond = header.integer(SacInteger::millisecond).value_or(0);
   const auto utc_s = utc_of(utc_of_day_of_year(*year, *day), *hour, *minute, *second);
-  if (!utc_s || std::abs(millisecond) > 999) {
-    problems.add(0, "SAC: the header's start is not a valid time");
-    return std::nullopt;
-  }
+  if (!utc_s || std::abs(millisecond) > 999)
+    return problems.add(0, "SAC: the header's start is not a valid time");
   return *utc_s + 1e-3 * millisecond + header.number(SacFloat::begin_s).value_or(0);
 }
 
 std::optional<std::vector<double>> read_values(GzipInput& file, const SacHeader& header,
                                                double unit_mps2, FileProblems& problems) {
   const auto points = static_cast<std::size_t>(header.integer(SacInteger::points).value_or(0));
-  if (points > RecordBuilder::kMaxValues) {
-    problems.add(0, fmt::format("a record holds at most {} values", RecordBuilder::kMaxValues));
-    return std::nullopt;
-  }
+  if (points > RecordBuilder::kMaxValues)
+    return problems.add(0,
+                        fmt::format("a record holds at most {} values", RecordBuilder::kMaxValues));
   std::vector<double> values;
   std::array<char, 4096> bytes{};
   while (values.size() < points) {
     const std::size_t wanted = std::min(bytes.size(), 4 * (points - values.size()));
     const std::int64_t got = file.read(bytes.data(), static_cast<std::int64_t>(wanted));
-    if (got != static_cast<std::int64_t>(wanted)) {
-      problems.add(0, !file.error().empty()
-                          ? file.error()
-                          : fmt::format("SAC: the header announces {} values, but the file ends "
-                                        "early",
-                                        points));
-      return std::nullopt;
-    }
+    if (got != static_cast<std::int64_t>(wanted))
+      return problems.add(
+          0, !file.error().empty()
+                 ? file.error()
+                 : fmt::format("SAC: the header announces {} values, but the file ends "
+                               "early",
+                               points));
     for (std::size_t at = 0; at < wanted; at += 4)
       values.push_back(
           unit_mps2 * static_cast<double>(sac_value(bytes.data() + at, header.other_byte_order())));
@@ -186,10 +182,9 @@ std::optional<Record> read_sac(const RecordOptions& options, FileProblems& probl
   std::string bytes(kSacHeaderBytes, '\0');
   const std::int64_t got = file.read(bytes.data(), std::ssize(bytes));
   const auto header = got == std::ssize(bytes) ? SacHeader::read(bytes) : std::nullopt;
-  if (!header) {
-    problems.add(0, file.error().empty() ? "is not a SAC file of version 6 or 7" : file.error());
-    return std::nullopt;
-  }
+  if (!header)
+    return problems.add(
+        0, file.error().empty() ? "is not a SAC file of version 6 or 7" : file.error());
   if (header->integer(SacInteger::file_type).value_or(kTimeSeries) != kTimeSeries ||
       header->integer(SacInteger::even).value_or(1) != 1)
     problems.add(0, "SAC: holds a spectrum or uneven steps, not an even time series");
