@@ -2,7 +2,6 @@
 #include "drivers/can/can_encoder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 

@@ -96,13 +96,8 @@ CanSource::CanSource(const CanMap& map, bool everything, Handler handler)
     : map_(map), everything_(everything), handler_(std::move(handler)), buses_(map.buses.size()) {
   for (std::size_t b = 0; b < buses_.size(); ++b)
     if (map.buses[b].send_sync && map.has_sync(static_cast<int>(b)))
-      buses_[b].timer = make_timer(map.buses[b].sync_period_us);
+      buses_[b].timer.reset(make_timer(map.buses[b].sync_period_us));
   for (Bus& bus : buses_) bus.stamps.now(read_host_clock());
-}
-
-CanSource::~CanSource() {
-  for (const Bus& bus : buses_)
-    if (bus.timer >= 0) ::close(bus.timer);
 }
 
 bool CanSource::open_bus(std::size_t b, std::string& error) {
@@ -146,7 +141,7 @@ void CanSource::attach(int bus, int descriptor) {
 void CanSource::descriptors(std::vector<pollfd>& out) const {
   for (const Bus& bus : buses_) {
     if (bus.socket.is_open()) out.push_back({bus.socket.descriptor(), POLLIN, 0});
-    if (bus.timer >= 0) out.push_back({bus.timer, POLLIN, 0});
+    if (bus.timer.get() >= 0) out.push_back({bus.timer.get(), POLLIN, 0});
   }
 }
 
@@ -184,7 +179,7 @@ void CanSource::start_node(const Bus& bus, std::uint8_t node) const {
 
 void CanSource::send_sync(std::size_t b) {
   std::uint64_t due = 0;
-  if (::read(buses_[b].timer, &due, sizeof due) != sizeof due || due == 0) return;
+  if (::read(buses_[b].timer.get(), &due, sizeof due) != sizeof due || due == 0) return;
   if (!buses_[b].state.open) return;
   (void)buses_[b].socket.write(sync_frame(map_.buses[b], buses_[b].syncs++));
 }
@@ -222,7 +217,7 @@ void CanSource::read(std::size_t b) {
 void CanSource::handle(std::int64_t now_us) {
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     poll_interface(b, now_us);
-    if (buses_[b].timer >= 0) send_sync(b);
+    if (buses_[b].timer.get() >= 0) send_sync(b);
     if (buses_[b].socket.is_open()) read(b);
   }
 }

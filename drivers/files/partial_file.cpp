@@ -171,10 +171,7 @@ bool PartialFile::commit() {
   if (::fsync(file_) != 0 && errno != EINVAL) fail(std::strerror(errno));
   if (error_.empty() && !still_ours()) {
     fail(partial + " was replaced while it was written");
-    unmark(mark_);
-    mark_ = -1;
-    ::close(file_);
-    file_ = -1;
+    close();
     return false;
   }
   if (error_.empty() && std::rename(partial.c_str(), path_.c_str()) != 0)
@@ -183,10 +180,7 @@ bool PartialFile::commit() {
     discard();
     return false;
   }
-  unmark(mark_);
-  mark_ = -1;
-  ::close(file_);
-  file_ = -1;
+  close();
   sync_folder_of(path_);
   return true;
 }
@@ -194,6 +188,10 @@ bool PartialFile::commit() {
 void PartialFile::discard() {
   if (file_ < 0) return;
   if (!is_standard_output_ && still_ours()) ::unlink((path_ + ".partial").c_str());
+  close();
+}
+
+void PartialFile::close() {
   unmark(mark_);
   mark_ = -1;
   ::close(file_);

@@ -54,17 +54,45 @@ enum class SacText : std::size_t { station = 0, location = 3, channel = 20, netw
 class SacHeader {
  public:
   /// Returns nullopt when the bytes are not such a header.
-  static std::optional<SacHeader> read(std::string_view bytes);
+  static std::optional<SacHeader> read(std::string_view bytes) {
+    if (bytes.size() < kSacHeaderBytes) return std::nullopt;
+    SacHeader header;
+    header.bytes_ = bytes.substr(0, kSacHeaderBytes);
+    for (const bool swapped : {false, true}) {
+      header.swapped_ = swapped;
+      const auto version = header.integer(SacInteger::version),
+                 points = header.integer(SacInteger::points);
+      if ((version == 6 || version == 7) && points > 0 && header.number(SacFloat::step_s) > 0)
+        return header;
+    }
+    return std::nullopt;
+  }
 
   bool other_byte_order() const { return swapped_; }
   /// Returns the shortest decimal that rounds to the float: 0.005, not 0.004999999888.
-  std::optional<double> number(SacFloat field) const;
-  std::optional<int> integer(SacInteger field) const;
+  std::optional<double> number(SacFloat field) const {
+    const auto value = std::bit_cast<float>(word(static_cast<std::size_t>(field)));
+    if (!std::isfinite(value) || value == static_cast<float>(kSacUndefined)) return std::nullopt;
+    return parse_number(fmt::format("{}", value));
+  }
+
+  std::optional<int> integer(SacInteger field) const {
+    const auto value = std::bit_cast<std::int32_t>(word(static_cast<std::size_t>(field)));
+    return value == kSacUndefined ? std::nullopt : std::optional<int>(value);
+  }
+
   /// Returns a text without the blanks that pad it.
-  std::string text(SacText field) const;
+  std::string text(SacText field) const {
+    std::string_view text(bytes_);
+    text = text.substr(kTextBegin + static_cast<std::size_t>(field) * kTextBytes, kTextBytes);
+    text = trimmed(text.substr(0, text.find('\0')));
+    return std::string(text.starts_with("-12345") ? std::string_view() : text);
+  }
 
  private:
-  std::uint32_t word(std::size_t at) const;
+  std::uint32_t word(std::size_t at) const {
+    return word_at(bytes_.data() + at * kWordBytes, swapped_);
+  }
 
   std::string bytes_;
   bool swapped_ = false;
@@ -73,42 +101,6 @@ class SacHeader {
 /// Returns a value of four bytes in a file of that byte order.
 float sac_value(const char* bytes, bool other_byte_order) {
   return std::bit_cast<float>(word_at(bytes, other_byte_order));
-}
-
-std::optional<SacHeader> SacHeader::read(std::string_view bytes) {
-  if (bytes.size() < kSacHeaderBytes) return std::nullopt;
-  SacHeader header;
-  header.bytes_ = bytes.substr(0, kSacHeaderBytes);
-  for (const bool swapped : {false, true}) {
-    header.swapped_ = swapped;
-    const auto version = header.integer(SacInteger::version),
-               points = header.integer(SacInteger::points);
-    if ((version == 6 || version == 7) && points > 0 && header.number(SacFloat::step_s) > 0)
-      return header;
-  }
-  return std::nullopt;
-}
-
-std::uint32_t SacHeader::word(std::size_t at) const {
-  return word_at(bytes_.data() + at * kWordBytes, swapped_);
-}
-
-std::optional<double> SacHeader::number(SacFloat field) const {
-  const auto value = std::bit_cast<float>(word(static_cast<std::size_t>(field)));
-  if (!std::isfinite(value) || value == static_cast<float>(kSacUndefined)) return std::nullopt;
-  return parse_number(fmt::format("{}", value));
-}
-
-std::optional<int> SacHeader::integer(SacInteger field) const {
-  const auto value = std::bit_cast<std::int32_t>(word(static_cast<std::size_t>(field)));
-  return value == kSacUndefined ? std::nullopt : std::optional<int>(value);
-}
-
-std::string SacHeader::text(SacText field) const {
-  std::string_view text(bytes_);
-  text = text.substr(kTextBegin + static_cast<std::size_t>(field) * kTextBytes, kTextBytes);
-  text = trimmed(text.substr(0, text.find('\0')));
-  return std::string(text.starts_with("-12345") ? std::string_view() : text);
 }
 
 constexpr int kTimeSeries = 1, kDisplacement = 6, kVelocity = 7;

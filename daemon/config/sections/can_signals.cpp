@@ -52,8 +52,7 @@ std::vector<CanBusReading> read_can_buses(const TomlValue& document, Config& con
     out.push_back({ConfigSection("can", "can", table, {}, problems), {}, true});
     CanBusReading& bus = out.back();
     ConfigSection& section = bus.section;
-    drivers::CanBusMap map;
-    section.read_into(map);
+    auto map = section.read<drivers::CanBusMap>();
     const double sync_s = section.number("sync_period_s");
     map.sync_period_us = sync_s > 0 ? 1e6 * sync_s : 1e6 / config.pipeline.options.rate_hz;
     if (section.good("sync_overflow") && map.sync_overflow == 1)

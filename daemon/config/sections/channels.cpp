@@ -105,14 +105,11 @@ AxisSource read_source(ConfigSection& channel, const std::string& label,
   const TomlValue* table = channel.value("source");
   if (table->find("can") || table->find("dbc_signal")) {
     ConfigSection section("channel.source.can", label + ".source", table, {}, problems);
-    AxisSource source;
-    if (!section.good("can") || !section.good("dbc_signal")) return source;
-    section.read_into(source);
-    return source;
+    if (!section.good("can") || !section.good("dbc_signal")) return {};
+    return section.read<AxisSource>();
   }
   ConfigSection section("channel.source", label + ".source", table, {}, problems);
-  AxisSource source;
-  section.read_into(source);
+  auto source = section.read<AxisSource>();
   if (source.lcm_channel.empty() || source.lcm_channel.size() > 63)
     section.problem("lcm", "an LCM channel's name has 1 to 63 characters");
   if (!section.good("node") || !section.good("axis") || !section.good("lcm"))
@@ -148,8 +145,7 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
                   Channels& channels, std::vector<TextProblem>& problems) {
   const std::string label = label_of(table);
   ConfigSection section("channel", label, &table, {}, problems);
-  estimator::SensorAxis axis;
-  section.read_into(axis);
+  auto axis = section.read<estimator::SensorAxis>();
   if (section.given("name"))
     if (const std::string rule = problem_of_name(axis.name); !rule.empty())
       section.problem("name", rule);
