@@ -38,10 +38,6 @@ TextPlace place_in(const TomlValue& section, std::string_view key, std::size_t i
   return value->place;
 }
 
-/// Appends warnings about [structure.design], whose table is `section`.
-void doubt_design(const TomlValue& section, const estimator::Structure& structure,
-                  const Eigen::VectorXd& design, std::vector<TextProblem>& doubts);
-
 /// Dense matrices of larger buildings take too long.
 constexpr int kMaxDegreesOfFreedom = 200;
 /// Factor of a frequency for a thousandfold stiffness or mass.
@@ -133,6 +129,7 @@ void doubt_unequal_stories(const TomlValue& section, const char* key, const esti
                    kMaxUnequalStories)});
 }
 
+/// Appends warnings about [structure.design], whose table is `section`.
 void doubt_design(const TomlValue& section, const estimator::Structure& s,
                   const Eigen::VectorXd& design, std::vector<TextProblem>& doubts) {
   const estimator::ParameterTable table(s);

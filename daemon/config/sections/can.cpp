@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,10 +10,14 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/file_digest.h"
 #include "daemon/config/keys/can_options.h"
+#include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"
-#include "daemon/config/sections/can_signals.h"
 #include "daemon/config/sections/sections.h"
+#include "daemon/config/sections/settings.h"
+#include "drivers/dbc/dbc.h"
+#include "drivers/files/standard_streams.h"
 #include "estimator/motion/acquisition.h"
 
 namespace framewatch::daemon {
@@ -23,6 +28,114 @@ using drivers::CanNodeMap;
 using drivers::CanTiming;
 using drivers::DbcMessage;
 using drivers::DbcSignal;
+
+/// A configured bus and the messages of its DBC files.
+struct CanBusReading {
+  ConfigSection section;
+  std::vector<drivers::DbcMessage> messages;
+  bool known = true;  ///< true if the DBC files could be read
+};
+
+/// A signal with its message, or the reason why it was not found.
+struct CanSignal {
+  const drivers::DbcMessage* message = nullptr;
+  const drivers::DbcSignal* signal = nullptr;
+  std::string problem;
+};
+
+/// Returns the message, or null if `name` is unknown.
+const DbcMessage* find_can_message(const CanBusReading& bus, const std::string& name) {
+  const auto at = std::find_if(bus.messages.begin(), bus.messages.end(),
+                               [&](const DbcMessage& m) { return m.name == name; });
+  return at == bus.messages.end() ? nullptr : &*at;
+}
+
+constexpr std::size_t kLongestInterface = 15;
+
+void read_dbc(const std::string& name, const Config& config, CanBusReading& bus,
+              std::vector<TextProblem>& problems) {
+  const std::filesystem::path beside = drivers::folder_of_paths_in(config.path);
+  const std::string path = (beside / name).string();
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  std::vector<drivers::Problem> found;
+  std::optional<drivers::Dbc> dbc;
+  if (text)
+    dbc = drivers::parse_dbc(path, *text, found);
+  else
+    bus.section.problem("dbc", fmt::format("{}: {}", path, error));
+  for (const drivers::Problem& p : found) problems.push_back({{}, p.message, p.where});
+  bus.known = bus.known && dbc;
+  if (!dbc) return;
+  for (drivers::DbcMessage& message : dbc->messages) {
+    if (find_can_message(bus, message.name) != nullptr)
+      bus.section.problem("dbc", fmt::format("two files have the message {}, the second is {}",
+                                             message.name, path));
+    else
+      bus.messages.push_back(std::move(message));
+  }
+}
+
+/// Reads [[can]] and its DBC files into config.can.buses. `config.path` and the options must be
+/// set.
+std::vector<CanBusReading> read_can_buses(const TomlValue& document, Config& config,
+                                          std::vector<TextProblem>& problems) {
+  std::vector<CanBusReading> out;
+  for (const TomlValue* table : tables_of(document, "can", problems)) {
+    out.push_back({ConfigSection("can", "can", table, {}, problems), {}, true});
+    CanBusReading& bus = out.back();
+    ConfigSection& section = bus.section;
+    auto map = section.read<drivers::CanBusMap>();
+    const double sync_s = section.number("sync_period_s");
+    map.sync_period_us = sync_s > 0 ? 1e6 * sync_s : 1e6 / config.pipeline.options.rate_hz;
+    if (section.good("sync_overflow") && map.sync_overflow == 1)
+      section.problem("sync_overflow", "must be 0 or 2 to 240, got 1");
+    if (section.given("interface") &&
+        (map.interface.empty() || map.interface.size() > kLongestInterface))
+      section.problem("interface",
+                      fmt::format("an interface's name has 1 to {} characters", kLongestInterface));
+    for (const drivers::CanBusMap& other : config.can.buses)
+      if (section.given("interface") && other.interface == map.interface)
+        section.problem("interface", fmt::format("{} has a [[can]] already", map.interface));
+    if (section.good("dbc"))
+      for (const std::string& name : section.texts("dbc")) read_dbc(name, config, bus, problems);
+    else
+      bus.known = false;
+    config.can.buses.push_back(map);
+  }
+  return out;
+}
+
+std::string unknown_can_message(const CanBusReading& bus, const std::string& name) {
+  std::vector<std::string> names;
+  for (const DbcMessage& m : bus.messages) names.push_back(m.name);
+  return fmt::format("no DBC file of the bus has the message {}{}", name,
+                     did_you_mean(name, names));
+}
+
+/// Finds "Message.Signal" in the DBC files of a bus.
+CanSignal find_can_signal(const CanBusReading& bus, const std::string& text) {
+  CanSignal found;
+  const std::size_t dot = text.find('.');
+  if (dot == std::string::npos) {
+    found.problem = fmt::format("expected Message.Signal, got \"{}\"", text);
+    return found;
+  }
+  const std::string message = text.substr(0, dot), signal = text.substr(dot + 1);
+  found.message = find_can_message(bus, message);
+  if (found.message == nullptr) {
+    found.problem = unknown_can_message(bus, message);
+    return found;
+  }
+  found.signal = found.message->find(signal);
+  if (found.signal == nullptr) {
+    std::vector<std::string> names;
+    for (const DbcSignal& s : found.message->signals) names.push_back(s.name);
+    found.problem =
+        fmt::format("message {} has no signal {}{}", message, signal, did_you_mean(signal, names));
+  }
+  return found;
+}
 
 /// A sensor node while it is read: its table, if any, and its channels.
 struct CanNodeReading : CanNodeSettings {
