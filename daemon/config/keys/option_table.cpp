@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 namespace framewatch::daemon {
 namespace {
@@ -126,12 +126,8 @@ std::vector<std::string> choices(const Option& option) {
 }
 
 std::string constraint(const Option& option) {
-  if (!option.choices.empty()) {
-    std::string list;
-    for (const std::string& choice : choices(option))
-      list += (list.empty() ? "\"" : ", \"") + choice + "\"";
-    return "one of " + list;
-  }
+  if (!option.choices.empty())
+    return fmt::format("one of \"{}\"", fmt::join(choices(option), "\", \""));
   std::string rule;
   if (option.range.min > -kUnlimited)
     rule = fmt::format("{} {:.10g}", option.range.above_min ? ">" : ">=", option.range.min);
