@@ -20,14 +20,14 @@ enum class Reach {
 };
 
 /// Allowed values of a number.
-struct Range {
+struct OptionRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool above_min = false;  ///< values must exceed min
 };
 
 /// Returns the range of values that exceed `min`.
-constexpr Range above(double min, double max = std::numeric_limits<double>::infinity()) {
+constexpr OptionRange above(double min, double max = std::numeric_limits<double>::infinity()) {
   return {min, max, true};
 }
 
@@ -45,7 +45,7 @@ struct Option {
   std::string paper_default = {};  ///< default for variant = "paper", if it differs
   bool no_default = false;         ///< optional, and the field's initial value is not a default
   bool required = false;
-  Range range = {};
+  OptionRange range = {};
   std::string_view choices = "";  ///< allowed texts, separated by |
   std::string_view meaning = "";
   /// Only for keys of the configuration file. Empty: that of the OptionSection.
