@@ -40,10 +40,6 @@ constexpr const char* kStyle =
     ".wide{overflow:visible}table{font-size:7.5pt;margin:.5em 0}th,td{padding:.2em .4em}"
     ".short,tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit}}";
 
-}  // namespace
-
-namespace {
-
 constexpr std::size_t kShortTable = 10;  // rows of a table that stays on one page of paper
 constexpr std::size_t kLongWords = 40;   // characters
 constexpr std::size_t kMaxColumns = 16;  // columns that are searched for words

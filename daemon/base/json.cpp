@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/base/json.h"
 
-#include <cmath>
 #include <string_view>
 
-#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/printable.h"

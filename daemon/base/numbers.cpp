@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/base/numbers.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <fmt/core.h>
 
 namespace framewatch::daemon {

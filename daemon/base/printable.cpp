@@ -3,9 +3,7 @@
 
 #include <unistd.h>
 
-#include <cstdint>
 #include <cstdlib>
-#include <string_view>
 
 #include <fmt/core.h>
 

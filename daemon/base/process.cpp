@@ -14,7 +14,6 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <vector>
 
 #include <fmt/core.h>
 

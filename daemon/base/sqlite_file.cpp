@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 
@@ -195,27 +193,18 @@ bool SqliteFile::open_new(const std::string& path) {
 
 bool SqliteFile::open_to_write(const std::string& path, const std::string& settings) {
   if (!is_file(path)) return false;
-  sqlite3* file = nullptr;
-  const int opened =
-      sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
-  file_.reset(file);
-  failure_ = {};
-  error_.clear();
-  if (opened != SQLITE_OK) {
-    fail();
-    file_.reset();
-    return false;
-  }
-  sqlite3_busy_timeout(file, kPatience_ms);
-  if (execute(settings)) return true;
+  if (open_with(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) && execute(settings)) return true;
   file_.reset();
   return false;
 }
 
 bool SqliteFile::open_to_read(const std::string& path) {
-  if (!is_file(path)) return false;
+  return is_file(path) && open_with(path, SQLITE_OPEN_READONLY);
+}
+
+bool SqliteFile::open_with(const std::string& path, int flags) {
   sqlite3* file = nullptr;
-  const int opened = sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READONLY, nullptr);
+  const int opened = sqlite3_open_v2(path.c_str(), &file, flags, nullptr);
   file_.reset(file);
   failure_ = {};
   error_.clear();

@@ -97,6 +97,7 @@ class SqliteFile {
   static void close_file(sqlite3* file);
   bool is_file(const std::string& path);
   bool open_to_write(const std::string& path, const std::string& settings);
+  bool open_with(const std::string& path, int flags);
   bool fail();
 
   std::unique_ptr<sqlite3, void (*)(sqlite3*)> file_;

@@ -7,10 +7,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>

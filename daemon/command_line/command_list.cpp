@@ -17,8 +17,9 @@ std::string CommandList::program() const {
   return app_.get_name();
 }
 
-CLI::App* CommandList::add(const std::string& name, const std::string& purpose) {
-  return app_.add_subcommand(name, purpose);
+CLI::App* CommandList::add(const std::string& name, const std::string& purpose,
+                           const std::string& footer) {
+  return app_.add_subcommand(name, purpose)->footer(footer);
 }
 
 void CommandList::set_action(CLI::App* command, std::function<int()> action,
@@ -55,6 +56,15 @@ int CommandList::run_chosen() const {
   return chosen_();
 }
 
+CLI::Option* add_file(CLI::App* command, const char* name, std::string& file, const char* what) {
+  return command->add_option(name, file, what)->type_name("FILE");
+}
+
+CLI::Option* add_folder(CLI::App* command, const char* name, std::string& folder,
+                        const char* what) {
+  return command->add_option(name, folder, what)->type_name("DIR");
+}
+
 void add_config(CommandList& commands, CLI::App* command, std::string& config) {
   commands.reads_files(
       command->add_option("CONFIG", config, "configuration file (TOML)")->required());
@@ -76,10 +86,8 @@ void add_record_options(CLI::App* command, RecordFileArguments& record) {
   command->add_option(
       "--unit", record.unit,
       "unit of a file that does not state it: g, mg, gal, mps2, or the m/s^2 of one");
-  command
-      ->add_option("--station-xml", record.station_xml,
-                   "StationXML of a miniSEED or SAC file's network, with units and more")
-      ->type_name("FILE");
+  add_file(command, "--station-xml", record.station_xml,
+           "StationXML of a miniSEED or SAC file's network, with units and more");
   command->add_option("--step", record.step_s, "seconds between samples of a file without times");
   command->add_option("--time", record.time,
                       "title of the column (or MATLAB variable) with the times");

@@ -5,7 +5,6 @@
 #include <functional>
 #include <list>
 #include <string>
-#include <utility>
 
 namespace CLI {
 class App;
@@ -25,8 +24,9 @@ class CommandList {
   /// Returns the program's name: framewatch, or framewatch fleet.
   [[nodiscard]] std::string program() const;
 
-  /// Adds a command without options.
-  CLI::App* add(const std::string& name, const std::string& purpose);
+  /// Adds a command without options. `footer` stands below its options in --help.
+  CLI::App* add(const std::string& name, const std::string& purpose,
+                const std::string& footer = "");
 
   /// Returns arguments with their defaults. They live as long as the list.
   template <class Arguments>
@@ -56,6 +56,10 @@ class CommandList {
   std::string name_of_chosen_;
   int reads_standard_input_ = 0;  ///< times
 };
+
+/// Adds an option that names a file, or a folder.
+CLI::Option* add_file(CLI::App* command, const char* name, std::string& file, const char* what);
+CLI::Option* add_folder(CLI::App* command, const char* name, std::string& folder, const char* what);
 
 // Options that several commands have.
 void add_config(CommandList& commands, CLI::App* command,

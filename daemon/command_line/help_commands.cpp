@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "daemon/base/exit_code.h"
@@ -61,9 +61,8 @@ std::string option_item(const OptionEntry& option) {
       head += '"';
   }
   std::string out = ".TP\n" + head + "\n" + roff(option.text) + "\n";
-  std::string words;
-  for (const std::string& word : option.choices) words += (words.empty() ? "" : ", ") + word;
-  if (!words.empty() && !option.is_argument) out += fmt::format("({})\n", roff(words));
+  if (!option.choices.empty() && !option.is_argument)
+    out += fmt::format("({})\n", roff(fmt::format("{}", fmt::join(option.choices, ", "))));
   return out;
 }
 

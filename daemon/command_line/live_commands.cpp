@@ -16,7 +16,11 @@ void add_demo(CommandList& commands) {
   DemoArguments& arguments = commands.arguments<DemoArguments>();
   CLI::App* command = commands.add(
       "demo",
-      "run a virtual shaking-table test over LCM with a live page, and compare with the truth");
+      "run a virtual shaking-table test over LCM with a live page, and compare with the truth",
+      "After 20 s one frame loses 15 % of its stiffness. The page shows which one, how much "
+      "and\nwith what error. With 20 stories, five lose 20 % in one frame; groups of stories are "
+      "identified.\nExamples:\n  framewatch demo --seconds 40 --report demo.html\n  framewatch "
+      "demo --building 20 --seconds 40");
   command
       ->add_option(
           "--building", arguments.building,
@@ -27,11 +31,6 @@ void add_demo(CommandList& commands) {
       ->add_option("--can", arguments.can,
                    "send the samples as CAN frames on this interface, without a page")
       ->type_name("INTERFACE");
-  command->footer(
-      "After 20 s one frame loses 15 % of its stiffness. The page shows which one, how much "
-      "and\nwith what error. With 20 stories, five lose 20 % in one frame; groups of stories are "
-      "identified.\nExamples:\n  framewatch demo --seconds 40 --report demo.html\n  framewatch "
-      "demo --building 20 --seconds 40");
   CLI::Option* report = command->add_option("--report", arguments.report,
                                             "report to write at the end (default: demo.html)");
   report->expected(0, 1)->type_name("[FILE]");
@@ -51,25 +50,20 @@ void add_demo(CommandList& commands) {
 
 void add_run(CommandList& commands) {
   RunArguments& arguments = commands.arguments<RunArguments>();
-  CLI::App* command =
-      commands.add("run", "run the daemon: read live samples (LCM, CAN), publish estimates (LCM)");
-  command->footer(
+  CLI::App* command = commands.add(
+      "run", "run the daemon: read live samples (LCM, CAN), publish estimates (LCM)",
       "SIGHUP reloads CONFIG. Changes that need a restart are refused.\nExit status: 0 stopped, 2 "
       "bad usage, configuration or input.\nExample: framewatch run configs/table_two_story.toml");
   add_config(commands, command, arguments.config);
   add_url(command, arguments.url);
-  command
-      ->add_option("--state", arguments.state,
-                   "file that keeps the learned state over a restart: read at the start,\nwritten "
-                   "every --state-every seconds and at the end")
-      ->type_name("FILE");
+  add_file(command, "--state", arguments.state,
+           "file that keeps the learned state over a restart: read at the start,\nwritten "
+           "every --state-every seconds and at the end");
   command->add_option("--state-every", arguments.state_every_s, "seconds between state saves")
       ->check(CLI::Range(1, 86400))
       ->capture_default_str();
-  command
-      ->add_option("--can-log", arguments.can_log,
-                   "log every frame of the CAN buses to this file, in the format of candump -l")
-      ->type_name("FILE");
+  add_file(command, "--can-log", arguments.can_log,
+           "log every frame of the CAN buses to this file, in the format of candump -l");
   command->add_flag(
       "--by-name", arguments.by_name,
       "match channels without a source by the names that nodes send (channel_table_t)");
@@ -80,9 +74,7 @@ void add_run(CommandList& commands) {
 void add_serve(CommandList& commands) {
   ServeArguments& arguments = commands.arguments<ServeArguments>();
   CLI::App* command = commands.add(
-      "serve",
-      "serve the live page: building, boxplots, histories, health and alarms in a browser");
-  command->footer(
+      "serve", "serve the live page: building, boxplots, histories, health and alarms in a browser",
       "Prints the page's address. Everyone who has the token in it can acknowledge alarms.\nAn "
       "address that other machines can reach needs --token-file.\nExamples:\n  framewatch serve "
       "configs/table_two_story.toml\n  framewatch serve b.toml --address 192.168.1.7 --token-file "
@@ -94,16 +86,12 @@ void add_serve(CommandList& commands) {
   command->add_option("--port", arguments.port, "port to listen on; 0: any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  command
-      ->add_option("--token-file", arguments.token_file,
-                   "file with the token: at least 16 letters, digits, - or _")
-      ->type_name("FILE");
+  add_file(command, "--token-file", arguments.token_file,
+           "file with the token: at least 16 letters, digits, - or _");
   command->add_option("--host", arguments.hosts,
                       "further host name under which the page may be opened");
-  command
-      ->add_option("--sessions", arguments.sessions,
-                   "show the reports in this folder of `framewatch record` (its --out)")
-      ->type_name("DIR")
+  add_folder(command, "--sessions", arguments.sessions,
+             "show the reports in this folder of `framewatch record` (its --out)")
       ->capture_default_str();
   command->add_option("--viewers", arguments.viewers, "largest number of open pages")
       ->check(CLI::Range(1, 10000))
@@ -113,8 +101,7 @@ void add_serve(CommandList& commands) {
                    "largest number of open pages per address; behind a proxy all pages share one")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command->add_option("--page", arguments.files, "read the page from this folder, for development")
-      ->type_name("DIR");
+  add_folder(command, "--page", arguments.files, "read the page from this folder, for development");
   command->add_flag("--quiet", arguments.quiet, "print only the address, errors and warnings");
   commands.set_action(command, [&arguments] { return serve(arguments); });
 }
@@ -122,8 +109,7 @@ void add_serve(CommandList& commands) {
 void add_status(CommandList& commands) {
   StatusArguments& arguments = commands.arguments<StatusArguments>();
   CLI::App* command = commands.add(
-      "status", "show on one screen if the running daemon is well, since when, and what is wrong");
-  command->footer(
+      "status", "show on one screen if the running daemon is well, since when, and what is wrong",
       "Listens to the daemon's messages for 2 to 4 s.\nExit status: 0 well, 1 not well, 2 no "
       "message from it, or bad usage or configuration.\nExample: framewatch status building.toml");
   add_installed_config(command, arguments.config);
@@ -134,8 +120,8 @@ void add_status(CommandList& commands) {
 
 void add_acknowledge(CommandList& commands) {
   AcknowledgeArguments& arguments = commands.arguments<AcknowledgeArguments>();
-  CLI::App* command = commands.add("acknowledge", "acknowledge an event of the running daemon");
-  command->footer(
+  CLI::App* command = commands.add(
+      "acknowledge", "acknowledge an event of the running daemon",
       "`framewatch status` shows the numbers of raised events. An acknowledged event no "
       "longer\nmakes the status bad, and [actions] send no notifications about it until it is "
       "cleared.\nExit status: 0 acknowledged, 1 no such event is raised, 2 no answer, or bad usage "
@@ -152,8 +138,7 @@ void add_acknowledge(CommandList& commands) {
 void add_tell(CommandList& commands) {
   TellArguments& arguments = commands.arguments<TellArguments>();
   CLI::App* command = commands.add(
-      "tell", "test the command and the webhook of [actions] with an event of kind \"test\"");
-  command->footer(
+      "tell", "test the command and the webhook of [actions] with an event of kind \"test\"",
       "Exit status: 0 delivered, 1 the command or the webhook failed, 2 bad usage or "
       "configuration.\nExample: framewatch tell building.toml");
   add_installed_config(command, arguments.config);
@@ -164,16 +149,15 @@ void add_tell(CommandList& commands) {
 
 void add_selftest(CommandList& commands) {
   SelftestArguments& arguments = commands.arguments<SelftestArguments>();
-  CLI::App* command = commands.add("selftest",
-                                   "check this machine for the daemon: network, buffers, clock, "
-                                   "disk, and an\nestimate with a known result");
-  command->footer(
-      "Exit status: 0 all good, 1 not all, 2 bad usage or configuration.\n"
-      "Example: framewatch selftest building.toml --dir /var/lib/framewatch");
+  CLI::App* command =
+      commands.add("selftest",
+                   "check this machine for the daemon: network, buffers, clock, "
+                   "disk, and an\nestimate with a known result",
+                   "Exit status: 0 all good, 1 not all, 2 bad usage or configuration.\n"
+                   "Example: framewatch selftest building.toml --dir /var/lib/framewatch");
   command->add_option("CONFIG", arguments.config,
                       "configuration file (TOML) with the LCM settings");
-  command->add_option("--dir", arguments.directory, "folder for state and records")
-      ->type_name("DIR")
+  add_folder(command, "--dir", arguments.directory, "folder for state and records")
       ->capture_default_str();
   add_json(command, arguments.json);
   commands.set_action(command, [&arguments] { return selftest(arguments); });

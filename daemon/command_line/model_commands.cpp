@@ -31,8 +31,7 @@ void add_init(CommandList& commands) {
   InitArguments& arguments = commands.arguments<InitArguments>();
   CLI::App* command = commands.add(
       "init",
-      "write a first configuration of your building, by questions or from options and a record");
-  command->footer(
+      "write a first configuration of your building, by questions or from options and a record",
       "On a terminal it asks for what the options leave open. Unambiguous column titles such "
       "as\nbase_x, F2-X or \"floor 2 frame y1\" give the place of a channel. PLACE is 0:x (base, "
       "along x),\n2:y1 (floor 2, frame y1), or 2:x if only one frame moves along x. Frames that "
@@ -89,9 +88,7 @@ void add_init(CommandList& commands) {
                    "place of a column: NAME=PLACE, such as acc3=2:y1")
       ->type_name("TEXT")
       ->allow_extra_args(false);
-  command->add_option("--out", arguments.out, "file to write")
-      ->type_name("FILE")
-      ->capture_default_str();
+  add_file(command, "--out", arguments.out, "file to write")->capture_default_str();
   command->add_flag("--force", arguments.force, "overwrite an existing file");
   command->add_flag("--quiet", arguments.quiet, "do not print how the answers were understood");
   add_max_size(command);
@@ -101,8 +98,8 @@ void add_init(CommandList& commands) {
 void add_check(CommandList& commands) {
   CheckArguments& arguments = commands.arguments<CheckArguments>();
   CLI::App* command =
-      commands.add("check", "list every problem of a configuration and what it can identify");
-  command->footer("Example: framewatch check configs/table_two_story.toml");
+      commands.add("check", "list every problem of a configuration and what it can identify",
+                   "Example: framewatch check configs/table_two_story.toml");
   commands.reads_files(
       command->add_option("CONFIG", arguments.config,
                           "configuration file, or scenario file of `framewatch simulate` (TOML)"));
@@ -125,8 +122,7 @@ void add_check(CommandList& commands) {
 void add_reproduce(CommandList& commands) {
   ReproduceArguments& arguments = commands.arguments<ReproduceArguments>();
   CLI::App* command = commands.add(
-      "reproduce", "reproduce the paper's tables and figures and compare its method with this one");
-  command->footer(
+      "reproduce", "reproduce the paper's tables and figures and compare its method with this one",
       "Writes DIR/report.html and, with all cases or few-sensors, DIR/accuracy.md. Reads "
       "the\npaper's ground motions and the measured shaking table from the folder "
       "FRAMEWATCH_DATA;\nwithout them it uses seeded motions.\nCases: table1, table2b, table2c, "
@@ -148,8 +144,7 @@ void add_diagnose(CommandList& commands) {
   DiagnoseArguments& arguments = commands.arguments<DiagnoseArguments>();
   CLI::App* command = commands.add(
       "diagnose",
-      "find where simulation and measurement disagree, name the missing effect, extend the model");
-  command->footer(
+      "find where simulation and measurement disagree, name the missing effect, extend the model",
       "Writes diagnosis.json, report.html and model.toml. Exit status: 0 adequate or explained, 1 "
       "a\n"
       "gap remains, 2 bad usage, configuration or input.\n"
@@ -190,8 +185,8 @@ void add_diagnose(CommandList& commands) {
 void add_adopt(CommandList& commands) {
   AdoptArguments& arguments = commands.arguments<AdoptArguments>();
   CLI::App* command =
-      commands.add("adopt", "install a model for the gap monitor of a running daemon");
-  command->footer("Example: framewatch adopt building.toml d/model.toml");
+      commands.add("adopt", "install a model for the gap monitor of a running daemon",
+                   "Example: framewatch adopt building.toml d/model.toml");
   command->add_option("CONFIG", arguments.config, "configuration file (TOML) with [gap] model")
       ->required();
   command->add_option("MODEL", arguments.model, "model.toml of `framewatch diagnose`")->required();

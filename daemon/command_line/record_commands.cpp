@@ -21,14 +21,10 @@ void add_parts(CLI::App* command, ReplayArguments& arguments) {
       "--one-pass", arguments.one_pass,
       "estimate in one pass like the daemon. By default a first pass tunes the\nfilters, so no "
       "window is lost to that. --save-state and --load-state imply\n--one-pass");
-  command
-      ->add_option("--save-state", arguments.save_state,
-                   "save the state to this file, to continue with --load-state")
-      ->type_name("FILE");
-  command
-      ->add_option("--load-state", arguments.load_state,
-                   "continue from the saved state of an earlier replay or of the daemon")
-      ->type_name("FILE");
+  add_file(command, "--save-state", arguments.save_state,
+           "save the state to this file, to continue with --load-state");
+  add_file(command, "--load-state", arguments.load_state,
+           "continue from the saved state of an earlier replay or of the daemon");
 }
 
 }  // namespace
@@ -36,8 +32,7 @@ void add_parts(CLI::App* command, ReplayArguments& arguments) {
 void add_replay(CommandList& commands) {
   ReplayArguments& arguments = commands.arguments<ReplayArguments>();
   CLI::App* command = commands.add(
-      "replay", "estimate from recorded motion, as fast as possible and reproducible to the byte");
-  command->footer(
+      "replay", "estimate from recorded motion, as fast as possible and reproducible to the byte",
       "Exit status: 0 done and as expected; 1 not as --expect requires; 2 bad usage, "
       "configuration,\nexpectations or input.\nExamples:\n  framewatch replay building.toml "
       "monday.lcmlog tuesday.lcmlog.zst --out estimates.lcmlog\n  framewatch replay building.toml "
@@ -50,18 +45,14 @@ void add_replay(CommandList& commands) {
                                         "record files\n(CSV), in order of time")
                            ->required());
   add_record_options(command, arguments.record);
-  command
-      ->add_option("--out", arguments.out,
-                   "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5); "
-                   ".sqlite\nfor summaries as in a history")
-      ->type_name("FILE");
+  add_file(command, "--out", arguments.out,
+           "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5); "
+           ".sqlite\nfor summaries as in a history");
   command->add_flag("--boxplot", arguments.boxplot,
                     "also write boxplot statistics to .csv and .mat");
-  command
-      ->add_option("--floors", arguments.floors,
-                   "file for the accelerations of every floor and the drift ratios of every "
-                   "story,\nalso those without a channel: .csv or .csv.gz")
-      ->type_name("FILE");
+  add_file(command, "--floors", arguments.floors,
+           "file for the accelerations of every floor and the drift ratios of every "
+           "story,\nalso those without a channel: .csv or .csv.gz");
   command
       ->add_option("--from", arguments.span.from_s,
                    "skip earlier samples: seconds after the first sample")
@@ -79,22 +70,14 @@ void add_replay(CommandList& commands) {
                                          "also publish on this URL, or on the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
   add_parts(command, arguments);
-  command->add_option("--expect", arguments.expect, "file with the expected result (TOML)")
-      ->type_name("FILE");
-  command->add_option("--write-expect", arguments.write_expect, "write such a file from the result")
-      ->type_name("FILE");
-  command
-      ->add_option("--write-baseline", arguments.write_baseline,
-                   "write a baseline file for [watch] from all windows of the replay")
-      ->type_name("FILE");
-  command
-      ->add_option("--event-reports", arguments.event_reports,
-                   "folder for the reports of [event_report] after strong motion")
-      ->type_name("DIR");
-  command
-      ->add_option("--junit", arguments.junit,
-                   "write the result of --expect to this file, as JUnit XML")
-      ->type_name("FILE");
+  add_file(command, "--expect", arguments.expect, "file with the expected result (TOML)");
+  add_file(command, "--write-expect", arguments.write_expect, "write such a file from the result");
+  add_file(command, "--write-baseline", arguments.write_baseline,
+           "write a baseline file for [watch] from all windows of the replay");
+  add_folder(command, "--event-reports", arguments.event_reports,
+             "folder for the reports of [event_report] after strong motion");
+  add_file(command, "--junit", arguments.junit,
+           "write the result of --expect to this file, as JUnit XML");
   command->add_flag("--salvage", arguments.salvage,
                     "replay the intact part of a damaged log instead of refusing it");
   command->add_flag("--quiet", arguments.quiet, "print no progress and no summary");
@@ -109,8 +92,7 @@ void add_replay(CommandList& commands) {
 void add_diff(CommandList& commands) {
   DiffArguments& arguments = commands.arguments<DiffArguments>();
   CLI::App* command = commands.add(
-      "diff", "compare two logs of estimates field by field: first and largest difference of each");
-  command->footer(
+      "diff", "compare two logs of estimates field by field: first and largest difference of each",
       "Exit status: 0 the estimates are the same, byte by byte; 1 they are not; 2 bad usage or "
       "input.\n"
       "Example: framewatch diff yesterday.lcmlog today.lcmlog");
@@ -125,17 +107,14 @@ void add_diff(CommandList& commands) {
 
 void add_repair(CommandList& commands) {
   RepairArguments& arguments = commands.arguments<RepairArguments>();
-  CLI::App* command =
-      commands.add("repair", "copy every intact event of a damaged log and list what was lost");
-  command->footer(
+  CLI::App* command = commands.add(
+      "repair", "copy every intact event of a damaged log and list what was lost",
       "Exit status: 0 intact, or a repaired log was written; 1 damaged, with --check; 2 bad "
       "usage\nor input. Nothing is written for an intact log.\nExamples:\n  framewatch repair "
       "night.lcmlog --out night.repaired.lcmlog\n  framewatch repair night.lcmlog --check --json");
   command->add_option("LOG", arguments.log, "LCM event log, plain or .zst")->required();
-  command
-      ->add_option("--out", arguments.out,
-                   "log to write (default: LOG with .repaired before its ending)")
-      ->type_name("FILE");
+  add_file(command, "--out", arguments.out,
+           "log to write (default: LOG with .repaired before its ending)");
   command->add_flag("--check", arguments.check, "write nothing, only list the damage");
   add_json(command, arguments.json);
   add_max_size(command);
@@ -144,11 +123,10 @@ void add_repair(CommandList& commands) {
 
 void add_refine(CommandList& commands) {
   RefineArguments& arguments = commands.arguments<RefineArguments>();
-  CLI::App* command =
-      commands.add("refine",
-                   "compute the maximum-likelihood estimate from one stretch of recorded motion, "
-                   "with the\nsmallest error that any estimate could have (Cramer-Rao bound)");
-  command->footer(
+  CLI::App* command = commands.add(
+      "refine",
+      "compute the maximum-likelihood estimate from one stretch of recorded motion, "
+      "with the\nsmallest error that any estimate could have (Cramer-Rao bound)",
       "Exit status: 0 refined, 1 not refined (too short, too quiet, ...), 2 bad usage or "
       "input.\nExample: framewatch refine building.toml record.lcmlog --from 12 --to 22");
   add_config(commands, command, arguments.config);
@@ -173,16 +151,14 @@ void add_refine(CommandList& commands) {
 void add_simulate(CommandList& commands) {
   SimulateArguments& arguments = commands.arguments<SimulateArguments>();
   CLI::App* command = commands.add(
-      "simulate", "simulate a building's accelerometers and send them to LCM, CAN or a file");
-  command->footer(
+      "simulate", "simulate a building's accelerometers and send them to LCM, CAN or a file",
       "Examples:\n"
       "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
       "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2\n"
       "  framewatch simulate configs/can/scenario_tower.toml --can vcan0");
   commands.reads_files(
       command->add_option("SCENARIO", arguments.scenario, "scenario file (TOML)")->required());
-  command->add_option("--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog")
-      ->type_name("FILE");
+  add_file(command, "--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog");
   CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
                                          "publish live on this URL, or on the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
@@ -197,8 +173,7 @@ void add_simulate(CommandList& commands) {
       ->capture_default_str();
   command->add_option("--seconds", arguments.seconds, "duration, instead of the scenario's")
       ->check(CLI::Range(1e-3, 1e6));
-  command->add_option("--truth", arguments.truth, "write the true values to this JSON file")
-      ->type_name("FILE");
+  add_file(command, "--truth", arguments.truth, "write the true values to this JSON file");
   command->add_flag("--quiet", arguments.quiet, "print no progress and no summary");
   add_max_size(command);
   commands.set_action(command, [&arguments, lcm, can] {
@@ -211,8 +186,7 @@ void add_simulate(CommandList& commands) {
 void add_record(CommandList& commands) {
   RecordArguments& arguments = commands.arguments<RecordArguments>();
   CLI::App* command = commands.add(
-      "record", "record test sessions: logs of raw samples and estimates, and a report at the end");
-  command->footer(
+      "record", "record test sessions: logs of raw samples and estimates, and a report at the end",
       "Checks the channels for 3 s, then records until Ctrl-C, --seconds or --send stop. "
       "With\n--standby it waits for commands of the live page or of --send from another "
       "terminal.\nExit status: 0 recorded and reported, 1 incomplete, 2 bad usage or "
@@ -222,8 +196,7 @@ void add_record(CommandList& commands) {
       "framewatch record table.toml --send start --test sweep");
   add_config(commands, command, arguments.config);
   add_url(command, arguments.url);
-  command->add_option("--out", arguments.out, "folder for the sessions, one folder each")
-      ->type_name("DIR")
+  add_folder(command, "--out", arguments.out, "folder for the sessions, one folder each")
       ->capture_default_str();
   SessionRequest& request = arguments.request;
   command->add_option("--test", request.test, "name of the test");
@@ -251,14 +224,10 @@ void add_record(CommandList& commands) {
       ->add_option("--send", arguments.send,
                    "send a command to the running recorder: start, arm, tap or stop")
       ->check(CLI::IsMember({"start", "arm", "tap", "stop"}));
-  command
-      ->add_option("--finish", arguments.finish,
-                   "complete a session that was interrupted or whose report failed")
-      ->type_name("DIR");
-  command
-      ->add_option("--reports", arguments.reports,
-                   "folder for the report (default: the session's folder)")
-      ->type_name("DIR");
+  add_folder(command, "--finish", arguments.finish,
+             "complete a session that was interrupted or whose report failed");
+  add_folder(command, "--reports", arguments.reports,
+             "folder for the report (default: the session's folder)");
   command->add_flag("--csv", arguments.csv, "also write raw samples and estimates as CSV");
   command->add_flag("--mat", arguments.mat, "also write raw samples and estimates for MATLAB");
   command->add_flag("--split", arguments.split, "also write a raw log per stage");
@@ -275,42 +244,33 @@ void add_report(CommandList& commands) {
   ReportArguments& arguments = commands.arguments<ReportArguments>();
   CLI::App* command = commands.add(
       "report",
-      "write a self-contained page about a session: boxplots, parameters, histories, loops");
-  command->footer(
+      "write a self-contained page about a session: boxplots, parameters, histories, loops",
       "With --config and --raw, it also shows stages (forced and free vibration side by "
       "side),\nreference-dynamic values, transfer functions, drifts and forces.\nExample: "
       "framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html");
   commands.reads_files(
       command->add_option("EST", arguments.estimates, "LCM event log of estimates")->required());
-  command->add_option("--out", arguments.out, "page to write (default: EST with .html)")
-      ->type_name("FILE");
+  add_file(command, "--out", arguments.out, "page to write (default: EST with .html)");
   commands.reads_files(
-      command->add_option("--config", arguments.config, "the building's configuration (TOML)")
-          ->type_name("FILE"));
+      add_file(command, "--config", arguments.config, "the building's configuration (TOML)"));
   commands.reads_files(
       command
           ->add_option("--raw", arguments.raw,
                        "raw samples: LCM event logs and record files, in order of time")
           ->type_name("FILE"));
   add_record_options(command, arguments.record);
-  command
-      ->add_option("--floors", arguments.floors,
-                   "JSON file for the peaks of every floor, and the errors when measured "
-                   "floors\nare left out in turn (channels on some floors only)")
-      ->type_name("FILE");
-  command
-      ->add_option("--drifts", arguments.drifts,
-                   "JSON file for the peak drift of every story with its error, its "
-                   "probable\ndamage by [fragility], and the placard")
-      ->type_name("FILE");
+  add_file(command, "--floors", arguments.floors,
+           "JSON file for the peaks of every floor, and the errors when measured "
+           "floors\nare left out in turn (channels on some floors only)");
+  add_file(command, "--drifts", arguments.drifts,
+           "JSON file for the peak drift of every story with its error, its "
+           "probable\ndamage by [fragility], and the placard");
   command->add_option("--title", arguments.title, "title of the page");
   command->add_option("--test", arguments.test, "name of the test");
   command->add_option("--operator", arguments.operator_name, "operator of the test");
   command->add_option("--notes", arguments.notes, "notes for the report");
-  command
-      ->add_option("--session", arguments.session,
-                   "session.json of `framewatch record`, with the channel check and the trigger")
-      ->type_name("FILE");
+  add_file(command, "--session", arguments.session,
+           "session.json of `framewatch record`, with the channel check and the trigger");
   command->add_flag("--quiet", arguments.quiet, "do not print the page's path");
   add_max_size(command);
   commands.set_action(command, [&arguments] { return report(arguments); });
@@ -318,9 +278,8 @@ void add_report(CommandList& commands) {
 
 void add_convert(CommandList& commands) {
   ConvertArguments& arguments = commands.arguments<ConvertArguments>();
-  CLI::App* command =
-      commands.add("convert", "convert records to LCM event logs or CSV, and logs to CSV");
-  command->footer(
+  CLI::App* command = commands.add(
+      "convert", "convert records to LCM event logs or CSV, and logs to CSV",
       "The content decides how a file is read. OUT's ending decides what is written: .lcmlog, "
       ".csv\nor .csv.gz. Several records of one rate become one log. docs/formats.md lists the "
       "formats.\nExamples:\n  framewatch convert rec.csv --config table.toml rec.lcmlog\n  "
@@ -336,11 +295,8 @@ void add_convert(CommandList& commands) {
       ->expected(2, 1000)
       ->type_name("");
   add_record_options(command, arguments.record);
-  command
-      ->add_option(
-          "--config", arguments.config,
-          "configuration whose channels give the LCM channel and node of equally named columns")
-      ->type_name("FILE");
+  add_file(command, "--config", arguments.config,
+           "configuration whose channels give the LCM channel and node of equally named columns");
   command->add_option("--channel", arguments.channel,
                       "LCM channel to write (default ACCEL) or to read");
   command->add_flag("--boxplot", arguments.boxplot, "also write boxplot columns");
@@ -360,8 +316,7 @@ void add_convert(CommandList& commands) {
 void add_history(CommandList& commands) {
   HistoryArguments& arguments = commands.arguments<HistoryArguments>();
   CLI::App* command = commands.add(
-      "history", "read what `run` keeps on disk: an overview, summaries, events, raw samples");
-  command->footer(
+      "history", "read what `run` keeps on disk: an overview, summaries, events, raw samples",
       "Times are UTC (2026-11-21T23:15:00Z) or seconds since 1970.\nExit status: 0 done, 2 bad "
       "usage or input; nothing is written.\nExamples:\n  framewatch history building.toml\n  "
       "framewatch history building.toml --last 2d --parameter 'kx_1_*'\n  framewatch history "
@@ -380,14 +335,10 @@ void add_history(CommandList& commands) {
                       "a\nfile, the shortest)");
   command->add_option("--parameter", arguments.parameters,
                       "names of parameters, with * and ? (default: all)");
-  command
-      ->add_option("--out", arguments.out,
-                   "file for the summaries: .csv, .csv.gz or .mat (MATLAB 5)")
-      ->type_name("FILE");
-  command
-      ->add_option("--raw", arguments.raw,
-                   "file for raw samples: .lcmlog, .csv, .csv.gz or .mseed (miniSEED)")
-      ->type_name("FILE");
+  add_file(command, "--out", arguments.out,
+           "file for the summaries: .csv, .csv.gz or .mat (MATLAB 5)");
+  add_file(command, "--raw", arguments.raw,
+           "file for raw samples: .lcmlog, .csv, .csv.gz or .mseed (miniSEED)");
   command->add_option("--channel", arguments.channels,
                       "channels of the raw samples (default: all)");
   command->add_option("--network", arguments.network, "SEED network code")->capture_default_str();

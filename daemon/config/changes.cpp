@@ -2,13 +2,11 @@
 #include "daemon/config/changes.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/config/keys/option_table.h"
 #include "daemon/config/keys/section_table.h"
 
 namespace framewatch::daemon {

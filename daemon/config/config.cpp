@@ -53,11 +53,9 @@ std::optional<Config> load_config(const std::string& path, std::vector<ConfigPro
   problems.clear();
   std::string error;
   const std::optional<std::string> text = read_text_file(path, error);
-  if (!text) {
-    problems.push_back({path, error});
-    return std::nullopt;
-  }
-  return parse_config(path, *text, problems);
+  if (text) return parse_config(path, *text, problems);
+  problems.push_back({path, error});
+  return std::nullopt;
 }
 
 }  // namespace framewatch::daemon

@@ -13,7 +13,6 @@
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"
 #include "daemon/config/read_config.h"
-#include "daemon/config/sections/config_problems.h"
 #include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {

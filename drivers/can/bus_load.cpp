@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "drivers/can/bus_load.h"
 
-#include <algorithm>
-
 namespace framewatch::drivers {
 namespace {
 
@@ -36,18 +34,16 @@ double worst_frame_s(int bytes, bool extended, bool fd, int bit_rate, int data_b
 BusLoad bus_load(const CanMap& map, int index) {
   const CanBusMap& bus = map.buses[static_cast<std::size_t>(index)];
   BusLoad load;
-  bool latched = false;
   const auto add = [&](double frames_hz, int bytes, bool extended, bool fd) {
     load.frames_hz += frames_hz;
     load.share += frames_hz * worst_frame_s(bytes, extended, fd, bus.bit_rate, bus.data_bit_rate);
   };
   for (const CanNodeMap& node : map.nodes) {
     if (node.bus != index) continue;
-    latched = latched || node.timing == CanTiming::sync;
     for (const CanMessageMap& m : node.messages)
       add(1e6 / (node.period_us * node.samples_per_frame), m.length, m.extended, m.fd);
   }
-  if (latched) add(1e6 / bus.sync_period_us, 0, false, false);
+  if (map.has_sync(index)) add(1e6 / bus.sync_period_us, 0, false, false);
   return load;
 }
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "drivers/can/can_map.h"
 
 namespace framewatch::drivers {

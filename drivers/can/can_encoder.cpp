@@ -2,10 +2,8 @@
 #include "drivers/can/can_encoder.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <span>
 
 namespace framewatch::drivers {
 
@@ -18,20 +16,9 @@ CanEncoder::CanEncoder(const CanMap& map) : map_(map), block_(map.nodes.size()) 
 
 std::vector<BusFrame> CanEncoder::instant(const std::vector<double>& values) {
   std::vector<BusFrame> out;
-  for (std::size_t b = 0; b < map_.buses.size(); ++b) {
-    const bool latched =
-        std::any_of(map_.nodes.begin(), map_.nodes.end(), [&](const CanNodeMap& n) {
-          return n.bus == static_cast<int>(b) && n.timing == CanTiming::sync;
-        });
-    if (!latched) continue;
-    BusFrame sync{static_cast<int>(b), {}};
-    sync.frame.id = map_.buses[b].sync_id;
-    if (const int overflow = map_.buses[b].sync_overflow; overflow > 0) {
-      sync.frame.length = 1;
-      sync.frame.data[0] = static_cast<std::uint8_t>(1 + instant_ % overflow);
-    }
-    out.push_back(sync);
-  }
+  for (int b = 0; b < static_cast<int>(map_.buses.size()); ++b)
+    if (map_.has_sync(b))
+      out.push_back({b, sync_frame(map_.buses[static_cast<std::size_t>(b)], instant_)});
   for (const std::size_t n : order_) add_node(n, values, out);
   ++instant_;
   return out;
@@ -74,18 +61,6 @@ void CanEncoder::add_node(std::size_t index, const std::vector<double>& values,
     }
     if (whole) out.push_back(made);
   }
-}
-
-double CanEncoder::quantized(int axis, double value) const {
-  for (const CanNodeMap& node : map_.nodes)
-    for (const CanMessageMap& m : node.messages)
-      for (const CanReading& r : m.readings) {
-        if (r.axis != axis) continue;
-        std::array<std::uint8_t, 64> data{};
-        put_physical(r.field, value, data);
-        return physical(r.field, data);
-      }
-  return value;
 }
 
 }  // namespace framewatch::drivers

@@ -28,9 +28,6 @@ class CanEncoder {
   /// Stamps are 0.
   std::vector<BusFrame> instant(const std::vector<double>& values);
 
-  /// Returns a value as CanIntake decodes it after encoding.
-  double quantized(int axis, double value) const;
-
  private:
   void add_node(std::size_t index, const std::vector<double>& values, std::vector<BusFrame>& out);
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -85,7 +84,6 @@ class CanIntake {
   }
   std::int64_t host_steps() const { return steps_.count(); }
   /// Returns the receive stamp of the newest frame; 0 before the first one.
-  std::int64_t newest_stamp_us() const { return newest_stamp_us_; }
   const CanMap& map() const { return map_; }
 
   template <typename Archive>

@@ -2,14 +2,12 @@
 #include "drivers/can/can_log.h"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
-#include <system_error>
 
 #include <fmt/core.h>
 
-#include "drivers/files/file_problems.h"
 #include "drivers/files/line_reader.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -24,12 +22,8 @@ int hex_digit(char c) {
 }
 
 std::optional<std::int64_t> digits(std::string_view text) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || text.front() == '-' || error != std::errc{} ||
-      end != text.data() + text.size())
-    return std::nullopt;
-  return value;
+  const bool unsigned_digits = text.find_first_not_of("0123456789") == std::string_view::npos;
+  return unsigned_digits ? parse_integer(text) : std::nullopt;
 }
 
 /// Removes "(seconds.microseconds) " from the beginning of the line.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -81,11 +82,23 @@ struct CanMap {
   bool resample = false;
 
   bool empty() const { return nodes.empty(); }
+  /// Returns true if a node of the bus samples at the SYNC.
+  bool has_sync(int bus) const {
+    return std::any_of(nodes.begin(), nodes.end(), [&](const CanNodeMap& node) {
+      return node.bus == bus && node.timing == CanTiming::sync;
+    });
+  }
 };
 
-/// Returns true if a frame with this id carries the message.
-inline bool matches(const CanMessageMap& message, std::uint32_t id, bool extended) {
-  return extended == message.extended && ((id ^ message.id) & message.mask) == 0;
+/// Returns the SYNC of a bus. `number` counts them from 0.
+inline CanFrame sync_frame(const CanBusMap& bus, std::int64_t number) {
+  CanFrame sync;
+  sync.id = bus.sync_id;
+  if (bus.sync_overflow > 0) {
+    sync.length = 1;
+    sync.data[0] = static_cast<std::uint8_t>(1 + number % bus.sync_overflow);
+  }
+  return sync;
 }
 
 }  // namespace framewatch::drivers

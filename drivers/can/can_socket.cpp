@@ -6,7 +6,6 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <linux/can.h>
 #include <linux/can/error.h>
@@ -54,26 +53,6 @@ CanFrame converted(const canfd_frame& raw, std::size_t bytes) {
 
 }  // namespace
 
-CanSocket::CanSocket(CanSocket&& other) noexcept {
-  *this = std::move(other);
-}
-
-CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
-  if (this == &other) return *this;
-  if (fd_ >= 0) ::close(fd_);
-  fd_ = std::exchange(other.fd_, -1);
-  index_ = other.index_;
-  buffer_bytes_ = other.buffer_bytes_;
-  dropped_before_ = other.dropped_before_;
-  dropped_ = other.dropped_;
-  controller_ = other.controller_;
-  return *this;
-}
-
-CanSocket::~CanSocket() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
 bool CanSocket::open(const std::string& interface, int receive_buffer_bytes,
                      const std::vector<CanFilter>& filters, bool own_frames, std::string& error) {
   const auto fail = [&](const char* what) {
@@ -81,17 +60,17 @@ bool CanSocket::open(const std::string& interface, int receive_buffer_bytes,
     return false;
   };
   CanSocket made(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
-  if (made.fd_ < 0) return fail("this kernel has no raw CAN sockets");
+  if (made.descriptor() < 0) return fail("this kernel has no raw CAN sockets");
   made.index_ = static_cast<int>(::if_nametoindex(interface.c_str()));
   if (made.index_ == 0) return fail("no such interface");
   const auto set = [&](int level, int option, int value) {
-    return ::setsockopt(made.fd_, level, option, &value, sizeof value) == 0;
+    return ::setsockopt(made.descriptor(), level, option, &value, sizeof value) == 0;
   };
   if (filters.size() <= CAN_RAW_FILTER_MAX && !filters.empty()) {
     std::vector<can_filter> wanted;
     for (const CanFilter& f : filters)
       wanted.push_back({f.id | (f.extended ? CAN_EFF_FLAG : 0), f.mask | CAN_EFF_FLAG});
-    if (::setsockopt(made.fd_, SOL_CAN_RAW, CAN_RAW_FILTER, wanted.data(),
+    if (::setsockopt(made.descriptor(), SOL_CAN_RAW, CAN_RAW_FILTER, wanted.data(),
                      static_cast<socklen_t>(wanted.size() * sizeof(can_filter))) != 0)
       return fail("the kernel refuses the filters");
   }
@@ -101,7 +80,7 @@ bool CanSocket::open(const std::string& interface, int receive_buffer_bytes,
   if (!set(SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer_bytes))
     (void)set(SOL_SOCKET, SO_RCVBUF, receive_buffer_bytes);
   socklen_t size = sizeof made.buffer_bytes_;
-  ::getsockopt(made.fd_, SOL_SOCKET, SO_RCVBUF, &made.buffer_bytes_, &size);
+  ::getsockopt(made.descriptor(), SOL_SOCKET, SO_RCVBUF, &made.buffer_bytes_, &size);
   made.buffer_bytes_ /= 2;  // the kernel reports twice the size
   (void)set(SOL_SOCKET, SO_RXQ_OVFL, 1);
   if (!set(SOL_SOCKET, SO_TIMESTAMPING,
@@ -111,7 +90,7 @@ bool CanSocket::open(const std::string& interface, int receive_buffer_bytes,
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = made.index_;
-  if (::bind(made.fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+  if (::bind(made.descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     return fail("cannot bind");
   *this = std::move(made);
   return true;
@@ -161,7 +140,7 @@ CanSocket::Read CanSocket::read(std::vector<CanFrame>& frames) {
     messages[i].msg_hdr.msg_control = control[i].data();
     messages[i].msg_hdr.msg_controllen = kControl;
   }
-  const int count = ::recvmmsg(fd_, messages.data(), kBatch, MSG_DONTWAIT, nullptr);
+  const int count = ::recvmmsg(fd_.get(), messages.data(), kBatch, MSG_DONTWAIT, nullptr);
   if (count < 0) {
     if (errno == EAGAIN || errno == EINTR || errno == ENOBUFS) return Read::idle;
     return errno == ENETDOWN ? Read::down : Read::failed;
@@ -183,18 +162,16 @@ bool CanSocket::write(const CanFrame& frame) const {
   if (frame.bit_rate_switch) raw.flags = CANFD_BRS;
   std::copy_n(frame.data.begin(), frame.length, raw.data);
   const std::size_t bytes = frame.fd ? CANFD_MTU : CAN_MTU;
-  return ::send(fd_, &raw, bytes, MSG_DONTWAIT | MSG_NOSIGNAL) == static_cast<ssize_t>(bytes);
+  return ::send(fd_.get(), &raw, bytes, MSG_DONTWAIT | MSG_NOSIGNAL) == static_cast<ssize_t>(bytes);
 }
 
 int find_interface(const std::string& name, bool& up) {
   up = false;
-  const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const int any = probe >= 0 ? probe : ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  Descriptor any(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (any.get() < 0) any.reset(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq request{};
   std::strncpy(request.ifr_name, name.c_str(), IFNAMSIZ - 1);
-  const bool known = ::ioctl(any, SIOCGIFFLAGS, &request) == 0;
-  ::close(any);
-  if (!known) return 0;
+  if (::ioctl(any.get(), SIOCGIFFLAGS, &request) != 0) return 0;
   up = (request.ifr_flags & IFF_UP) != 0;
   return static_cast<int>(::if_nametoindex(name.c_str()));
 }

@@ -7,6 +7,7 @@
 
 #include "drivers/can/can_frame.h"
 #include "drivers/can/lower_envelope_clock.h"
+#include "drivers/files/descriptor.h"
 
 namespace framewatch::drivers {
 
@@ -24,9 +25,6 @@ class CanSocket {
 
   CanSocket() = default;
   explicit CanSocket(int descriptor) : fd_(descriptor) {}
-  CanSocket(CanSocket&& other) noexcept;
-  CanSocket& operator=(CanSocket&& other) noexcept;
-  ~CanSocket();
 
   /// Opens an interface. `own_frames` also receives the frames sent here. Returns false and sets
   /// `error` when there is no such interface, or no CAN in this kernel. An interface that is down
@@ -34,8 +32,8 @@ class CanSocket {
   [[nodiscard]] bool open(const std::string& interface, int receive_buffer_bytes,
                           const std::vector<CanFilter>& filters, bool own_frames,
                           std::string& error);
-  bool is_open() const { return fd_ >= 0; }
-  int descriptor() const { return fd_; }
+  bool is_open() const { return fd_.get() >= 0; }
+  int descriptor() const { return fd_.get(); }
   int interface_index() const { return index_; }
   /// Returns the bytes that the kernel granted.
   int receive_buffer_bytes() const { return buffer_bytes_; }
@@ -51,7 +49,8 @@ class CanSocket {
  private:
   std::int64_t stamp_us(const void* message);
 
-  int fd_ = -1, index_ = 0, buffer_bytes_ = 0;
+  Descriptor fd_;
+  int index_ = 0, buffer_bytes_ = 0;
   std::uint32_t dropped_before_ = 0;
   std::int64_t dropped_ = 0;
   LowerEnvelopeClock controller_{};  ///< clock of the controller's stamps

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdlib>
 #include <utility>
 
@@ -18,12 +17,6 @@ namespace {
 constexpr std::int64_t kPollAgain_us = 50'000;
 constexpr int kBatches = 64;  ///< read from one bus before the others have their turn
 constexpr std::uint8_t kNmtStart = 1;
-
-bool is_latched(const CanMap& map, std::size_t bus) {
-  return std::any_of(map.nodes.begin(), map.nodes.end(), [&](const CanNodeMap& n) {
-    return n.bus == static_cast<int>(bus) && n.timing == CanTiming::sync;
-  });
-}
 
 int make_timer(double period_us) {
   const int timer = ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
@@ -86,16 +79,15 @@ HostClockReading read_host_clock() {
 
 std::vector<CanFilter> filters_of(const CanMap& map, int bus) {
   std::vector<CanFilter> out;
-  bool latched = false;
   for (const CanNodeMap& node : map.nodes) {
     if (node.bus != bus) continue;
-    latched = latched || node.timing == CanTiming::sync;
     for (const CanMessageMap& m : node.messages) out.push_back({m.id, m.mask, m.extended});
     if (node.canopen_id == 0) continue;
     out.push_back({0x080u + static_cast<std::uint32_t>(node.canopen_id), 0x7FF, false});
     out.push_back({0x700u + static_cast<std::uint32_t>(node.canopen_id), 0x7FF, false});
   }
-  if (latched) out.push_back({map.buses[static_cast<std::size_t>(bus)].sync_id, 0x7FF, false});
+  if (map.has_sync(bus))
+    out.push_back({map.buses[static_cast<std::size_t>(bus)].sync_id, 0x7FF, false});
   if (map.buses[static_cast<std::size_t>(bus)].nmt_start) out.push_back({0x700, 0x780, false});
   return out;
 }
@@ -103,14 +95,9 @@ std::vector<CanFilter> filters_of(const CanMap& map, int bus) {
 CanSource::CanSource(const CanMap& map, bool everything, Handler handler)
     : map_(map), everything_(everything), handler_(std::move(handler)), buses_(map.buses.size()) {
   for (std::size_t b = 0; b < buses_.size(); ++b)
-    if (map.buses[b].send_sync && is_latched(map, b))
-      buses_[b].timer = make_timer(map.buses[b].sync_period_us);
+    if (map.buses[b].send_sync && map.has_sync(static_cast<int>(b)))
+      buses_[b].timer.reset(make_timer(map.buses[b].sync_period_us));
   for (Bus& bus : buses_) bus.stamps.now(read_host_clock());
-}
-
-CanSource::~CanSource() {
-  for (const Bus& bus : buses_)
-    if (bus.timer >= 0) ::close(bus.timer);
 }
 
 bool CanSource::open_bus(std::size_t b, std::string& error) {
@@ -154,7 +141,7 @@ void CanSource::attach(int bus, int descriptor) {
 void CanSource::descriptors(std::vector<pollfd>& out) const {
   for (const Bus& bus : buses_) {
     if (bus.socket.is_open()) out.push_back({bus.socket.descriptor(), POLLIN, 0});
-    if (bus.timer >= 0) out.push_back({bus.timer, POLLIN, 0});
+    if (bus.timer.get() >= 0) out.push_back({bus.timer.get(), POLLIN, 0});
   }
 }
 
@@ -192,15 +179,9 @@ void CanSource::start_node(const Bus& bus, std::uint8_t node) const {
 
 void CanSource::send_sync(std::size_t b) {
   std::uint64_t due = 0;
-  if (::read(buses_[b].timer, &due, sizeof due) != sizeof due || due == 0) return;
+  if (::read(buses_[b].timer.get(), &due, sizeof due) != sizeof due || due == 0) return;
   if (!buses_[b].state.open) return;
-  CanFrame sync;
-  sync.id = map_.buses[b].sync_id;
-  if (const int overflow = map_.buses[b].sync_overflow; overflow > 0) {
-    sync.length = 1;
-    sync.data[0] = static_cast<std::uint8_t>(1 + buses_[b].syncs++ % overflow);
-  }
-  (void)buses_[b].socket.write(sync);
+  (void)buses_[b].socket.write(sync_frame(map_.buses[b], buses_[b].syncs++));
 }
 
 void CanSource::read(std::size_t b) {
@@ -236,7 +217,7 @@ void CanSource::read(std::size_t b) {
 void CanSource::handle(std::int64_t now_us) {
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     poll_interface(b, now_us);
-    if (buses_[b].timer >= 0) send_sync(b);
+    if (buses_[b].timer.get() >= 0) send_sync(b);
     if (buses_[b].socket.is_open()) read(b);
   }
 }

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -61,7 +60,6 @@ class CanSource {
   /// `map` must outlive this object. `everything` sets no filters, for a recorder. `handler` gets
   /// the frames with the index of their bus.
   CanSource(const CanMap& map, bool everything, Handler handler);
-  ~CanSource();
   CanSource(const CanSource&) = delete;
   CanSource& operator=(const CanSource&) = delete;
 
@@ -89,7 +87,7 @@ class CanSource {
     CanSocket socket;
     ContinuousStamps stamps;
     bool attached = false;
-    int timer = -1;  ///< sends the SYNC; -1: no timer
+    Descriptor timer;  ///< sends the SYNC; negative: no timer
     std::int64_t syncs = 0;
     BusState state;
     std::int64_t dropped_before = 0;  ///< dropped by sockets that are closed now

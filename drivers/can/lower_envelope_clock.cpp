@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "drivers/can/lower_envelope_clock.h"
 
-#include <algorithm>
-
 namespace framewatch::drivers {
 
 void LowerEnvelopeClock::start(double device_us, double host_us) {

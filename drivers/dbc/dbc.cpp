@@ -4,17 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdint>
 #include <map>
-#include <optional>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
 
-#include "drivers/files/file_problems.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {
@@ -36,130 +32,119 @@ class DbcScanner {
   bool at_end() const { return at_ >= text_.size(); }
   std::int64_t line() const { return line_; }
   /// Returns the rest of this line, for messages.
-  std::string_view rest_of_line() const;
+  std::string_view rest_of_line() const {
+    const std::size_t end = text_.find_first_of("\r\n", at_);
+    return text_.substr(at_, end == std::string_view::npos ? end : end - at_);
+  }
 
-  void skip_space();   ///< skips blanks and line ends
-  void skip_blanks();  ///< skips blanks within the line
-  void skip_line();
+  /// Skips blanks and line ends.
+  void skip_space() {
+    while (!at_end() && (here() == ' ' || here() == '\t' || here() == '\r' || here() == '\n'))
+      step();
+  }
+
+  /// Skips blanks within the line.
+  void skip_blanks() {
+    while (!at_end() && (here() == ' ' || here() == '\t' || here() == '\r')) step();
+  }
+
+  void skip_line() {
+    while (!at_end() && here() != '\n') step();
+    if (!at_end()) step();
+  }
+
   /// Skips to after the next ';' outside quotes. Returns false at the end of the file.
-  bool skip_statement();
+  bool skip_statement() {
+    while (!at_end()) {
+      if (here() == '"') {
+        if (!quoted()) return false;
+        continue;
+      }
+      const bool last = here() == ';';
+      step();
+      if (last) return true;
+    }
+    return false;
+  }
 
   /// Reads a name of letters, digits and _ that does not begin with a digit. Returns an empty text
   /// when there is no name.
-  std::string_view word();
+  std::string_view word() {
+    const std::string_view found = peek_word();
+    at_ += found.size();
+    return found;
+  }
+
   /// Returns what word() would return, without consuming it.
-  std::string_view peek_word();
+  std::string_view peek_word() {
+    skip_blanks();
+    if (!is_letter(here())) return {};
+    std::size_t end = at_;
+    while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
+    return text_.substr(at_, end - at_);
+  }
+
   /// Reads a character after blanks. Returns false for another one.
-  bool symbol(char wanted);
-  std::optional<std::uint64_t> natural();
-  std::optional<double> number();
+  bool symbol(char wanted) {
+    skip_blanks();
+    if (here() != wanted) return false;
+    step();
+    return true;
+  }
+
+  std::optional<std::uint64_t> natural() {
+    skip_blanks();
+    std::uint64_t value = 0;
+    const auto [end, error] =
+        std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    if (error != std::errc{}) return std::nullopt;
+    at_ = static_cast<std::size_t>(end - text_.data());
+    return value;
+  }
+
+  std::optional<double> number() {
+    skip_blanks();
+    std::size_t end = at_;
+    while (end < text_.size() &&
+           (is_digit(text_[end]) ||
+            std::string_view("+-.eE").find(text_[end]) != std::string_view::npos))
+      ++end;
+    const std::optional<double> value = parse_number(text_.substr(at_, end - at_));
+    if (value) at_ = end;
+    return value;
+  }
+
   /// Reads a text in quotes, which may span lines. Returns nullopt when the next character is not a
   /// quote, or the text does not end.
-  std::optional<std::string> quoted();
+  std::optional<std::string> quoted() {
+    skip_blanks();
+    if (here() != '"') return std::nullopt;
+    std::string out;
+    for (step(); !at_end(); step()) {
+      if (here() == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
+        step();
+        out += '"';
+      } else if (here() == '"') {
+        step();
+        return out;
+      } else {
+        out += here();
+      }
+    }
+    return std::nullopt;
+  }
 
  private:
   char here() const { return at_ < text_.size() ? text_[at_] : '\0'; }
-  void step();
+  void step() {
+    if (here() == '\n') ++line_;
+    ++at_;
+  }
 
   std::string_view text_;
   std::size_t at_ = 0;
   std::int64_t line_ = 1;
 };
-
-void DbcScanner::step() {
-  if (here() == '\n') ++line_;
-  ++at_;
-}
-
-std::string_view DbcScanner::rest_of_line() const {
-  const std::size_t end = text_.find_first_of("\r\n", at_);
-  return text_.substr(at_, end == std::string_view::npos ? end : end - at_);
-}
-
-void DbcScanner::skip_space() {
-  while (!at_end() && (here() == ' ' || here() == '\t' || here() == '\r' || here() == '\n')) step();
-}
-
-void DbcScanner::skip_blanks() {
-  while (!at_end() && (here() == ' ' || here() == '\t' || here() == '\r')) step();
-}
-
-void DbcScanner::skip_line() {
-  while (!at_end() && here() != '\n') step();
-  if (!at_end()) step();
-}
-
-bool DbcScanner::skip_statement() {
-  while (!at_end()) {
-    if (here() == '"') {
-      if (!quoted()) return false;
-      continue;
-    }
-    const bool last = here() == ';';
-    step();
-    if (last) return true;
-  }
-  return false;
-}
-
-std::string_view DbcScanner::peek_word() {
-  skip_blanks();
-  if (!is_letter(here())) return {};
-  std::size_t end = at_;
-  while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
-  return text_.substr(at_, end - at_);
-}
-
-std::string_view DbcScanner::word() {
-  const std::string_view found = peek_word();
-  at_ += found.size();
-  return found;
-}
-
-bool DbcScanner::symbol(char wanted) {
-  skip_blanks();
-  if (here() != wanted) return false;
-  step();
-  return true;
-}
-
-std::optional<std::uint64_t> DbcScanner::natural() {
-  skip_blanks();
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-  if (error != std::errc{}) return std::nullopt;
-  at_ = static_cast<std::size_t>(end - text_.data());
-  return value;
-}
-
-std::optional<double> DbcScanner::number() {
-  skip_blanks();
-  std::size_t end = at_;
-  while (end < text_.size() && (is_digit(text_[end]) || std::string_view("+-.eE").find(
-                                                            text_[end]) != std::string_view::npos))
-    ++end;
-  const std::optional<double> value = parse_number(text_.substr(at_, end - at_));
-  if (value) at_ = end;
-  return value;
-}
-
-std::optional<std::string> DbcScanner::quoted() {
-  skip_blanks();
-  if (here() != '"') return std::nullopt;
-  std::string out;
-  for (step(); !at_end(); step()) {
-    if (here() == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
-      step();
-      out += '"';
-    } else if (here() == '"') {
-      step();
-      return out;
-    } else {
-      out += here();
-    }
-  }
-  return std::nullopt;
-}
 
 constexpr std::uint32_t kExtendedFlag = 0x80000000u;
 constexpr std::uint64_t kIndependent = 0xC0000000u;  ///< VECTOR__INDEPENDENT_SIG_MSG

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <utility>
 
 namespace framewatch::drivers {
 
@@ -13,8 +14,11 @@ class Descriptor {
  public:
   explicit Descriptor(int file = -1) : file_(file) {}
   ~Descriptor() { reset(-1); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor(Descriptor&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    reset(std::exchange(other.file_, -1));
+    return *this;
+  }
   int get() const { return file_; }
   /// Closes the descriptor and owns `file` instead.
   void reset(int file) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "drivers/files/caught.h"
+#include "drivers/files/descriptor.h"
 #include "drivers/files/partial_file.h"
 
 namespace framewatch::drivers {
@@ -75,11 +76,8 @@ void DurableFile::begin_thread() {
 }
 
 bool DurableFile::in_use(const std::string& path) {
-  const int file = open_own_file(path + ".partial", O_RDONLY);
-  if (file < 0) return false;
-  const bool locked = ::flock(file, LOCK_EX | LOCK_NB) != 0;
-  ::close(file);
-  return locked;
+  const Descriptor file(open_own_file(path + ".partial", O_RDONLY));
+  return file.get() >= 0 && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0;
 }
 
 bool DurableFile::append(std::string_view bytes) {

@@ -5,11 +5,12 @@
 
 namespace framewatch::drivers {
 
-void FileProblems::add(std::int64_t line, const std::string& message) {
-  if (full()) return;
+std::nullopt_t FileProblems::add(std::int64_t line, const std::string& message) {
+  if (full()) return std::nullopt;
   problems_->push_back({line > 0 ? fmt::format("{}:{}", path_, line) : path_, message});
   ++count_;
   if (full()) problems_->push_back({path_, fmt::format("only the first {} are listed", kMax)});
+  return std::nullopt;
 }
 
 std::string show_text(std::string_view text) {

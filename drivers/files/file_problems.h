@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,8 +26,8 @@ class FileProblems {
       : path_(std::move(path)), problems_(&problems) {}
 
   /// Adds a problem at a line, counted from 1; line 0 stands for the whole file. Problems beyond
-  /// kMax are dropped, after a note that says so.
-  void add(std::int64_t line, const std::string& message);
+  /// kMax are dropped, after a note that says so. Returns nullopt, for readers that end with it.
+  std::nullopt_t add(std::int64_t line, const std::string& message);
   bool any() const { return count_ > 0; }
   bool full() const { return count_ >= kMax; }
   const std::string& path() const { return path_; }

@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,10 +11,10 @@
 #include <cerrno>
 #include <climits>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
+#include "drivers/files/descriptor.h"
 #include "drivers/files/standard_streams.h"
 
 namespace framewatch::drivers {
@@ -173,10 +172,7 @@ bool PartialFile::commit() {
   if (::fsync(file_) != 0 && errno != EINVAL) fail(std::strerror(errno));
   if (error_.empty() && !still_ours()) {
     fail(partial + " was replaced while it was written");
-    unmark(mark_);
-    mark_ = -1;
-    ::close(file_);
-    file_ = -1;
+    close();
     return false;
   }
   if (error_.empty() && std::rename(partial.c_str(), path_.c_str()) != 0)
@@ -185,10 +181,7 @@ bool PartialFile::commit() {
     discard();
     return false;
   }
-  unmark(mark_);
-  mark_ = -1;
-  ::close(file_);
-  file_ = -1;
+  close();
   sync_folder_of(path_);
   return true;
 }
@@ -196,6 +189,10 @@ bool PartialFile::commit() {
 void PartialFile::discard() {
   if (file_ < 0) return;
   if (!is_standard_output_ && still_ours()) ::unlink((path_ + ".partial").c_str());
+  close();
+}
+
+void PartialFile::close() {
   unmark(mark_);
   mark_ = -1;
   ::close(file_);
@@ -204,10 +201,8 @@ void PartialFile::discard() {
 
 void sync_folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  ::fsync(file);
-  ::close(file);
+  const Descriptor file(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() >= 0) ::fsync(file.get());
 }
 
 int open_own_file(const std::string& path, int flags, mode_t mode) {
@@ -231,16 +226,12 @@ void remove_partial_files() {
 
 std::string keep_cut_off(const std::string& path) {
   const std::string partial = path + ".partial";
-  const int file = ::open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (file < 0) return {};
+  const Descriptor file(::open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat there {};
-  const bool ours = ::fstat(file, &there) == 0 && S_ISREG(there.st_mode) &&
+  const bool ours = file.get() >= 0 && ::fstat(file.get(), &there) == 0 && S_ISREG(there.st_mode) &&
                     there.st_uid == ::geteuid() && there.st_size > 0 &&
-                    ::flock(file, LOCK_EX | LOCK_NB) == 0;
-  std::string kept;
-  if (ours) kept = rename_cut_off(partial, path);
-  ::close(file);
-  return kept;
+                    ::flock(file.get(), LOCK_EX | LOCK_NB) == 0;
+  return ours ? rename_cut_off(partial, path) : "";
 }
 
 }  // namespace framewatch::drivers

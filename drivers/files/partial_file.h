@@ -41,6 +41,7 @@ class PartialFile {
   bool still_ours() const;
   bool open_standard_output();
   bool fail(const std::string& why);
+  void close();
 
   std::string path_;
   std::string error_;

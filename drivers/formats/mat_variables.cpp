@@ -11,7 +11,6 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -348,11 +347,9 @@ std::optional<std::vector<MatVariable>> MatFileReader::variables(FileProblems& p
                                 kMaxVariables, kDeepestStruct));
     return std::nullopt;
   }
-  if (state_->tops.size() < state_->stated) {
-    problems.add(0, fmt::format("is damaged: {} of its {} variables can be read",
-                                state_->tops.size(), state_->stated));
-    return std::nullopt;
-  }
+  if (state_->tops.size() < state_->stated)
+    return problems.add(0, fmt::format("is damaged: {} of its {} variables can be read",
+                                       state_->tops.size(), state_->stated));
   state_->read.resize(state_->tops.size());
   return out;
 }

@@ -76,18 +76,15 @@ std::optional<TableLayout> find_layout(LineReader& lines, std::string_view& line
     found = is_table_header(line, options);
   }
   if (problems.any()) return std::nullopt;
-  if (layout.titles.empty()) {
-    problems.add(0, "there is no header: write the names of the columns above the numbers");
-    return std::nullopt;
-  }
+  if (layout.titles.empty())
+    return problems.add(0, "there is no header: write the names of the columns above the numbers");
   const auto row = at_row ? split_cells(line, ' ') : std::nullopt;
-  if (layout.delimiter == ' ' && row && row->size() != layout.titles.size()) {
-    problems.add(lines.number(),
-                 fmt::format("{} fields where the header has {}: names with blanks need quotes, or "
-                             "semicolons between columns",
-                             row->size(), layout.titles.size()));
-    return std::nullopt;
-  }
+  if (layout.delimiter == ' ' && row && row->size() != layout.titles.size())
+    return problems.add(
+        lines.number(),
+        fmt::format("{} fields where the header has {}: names with blanks need quotes, or "
+                    "semicolons between columns",
+                    row->size(), layout.titles.size()));
   layout.trailing = layout.titles.size() > 1 && layout.titles.back().empty();
   if (layout.trailing) layout.titles.pop_back();
   return layout;
@@ -155,13 +152,12 @@ class TableReader {
     auto record = builder_.finish();
     if (record) say_forces(*record);
     if (!record || !columns_.time || columns_.time_unit_said || stamps_) return record;
-    if (record->rate_hz < kMinRateOfSeconds_hz || record->rate_hz > 1e4) {
-      problems_.add(layout_.header_line,
-                    fmt::format("{}: the header does not say the unit, and in seconds it would be "
-                                "{:g} Hz: declare it with --time-unit s, ms, us or ns",
-                                show_text(layout_.titles[*columns_.time]), record->rate_hz));
-      return std::nullopt;
-    }
+    if (record->rate_hz < kMinRateOfSeconds_hz || record->rate_hz > 1e4)
+      return problems_.add(
+          layout_.header_line,
+          fmt::format("{}: the header does not say the unit, and in seconds it would be "
+                      "{:g} Hz: declare it with --time-unit s, ms, us or ns",
+                      show_text(layout_.titles[*columns_.time]), record->rate_hz));
     record->notes.push_back(fmt::format("{} is taken as seconds: {:g} Hz",
                                         show_text(layout_.titles[*columns_.time]),
                                         record->rate_hz));
@@ -202,14 +198,10 @@ class TableReader {
       return *number * columns_.time_unit_s;
     }
     const auto stamp = parse_time_stamp(text);
-    if (!stamp) {
-      problems_.add(line, fmt::format("time {}", why_no_time(text)));
-      return std::nullopt;
-    }
-    if (count_ > 0 && !stamps_) {
-      problems_.add(line, fmt::format("time {}: the rows above have numbers", show_text(text)));
-      return std::nullopt;
-    }
+    if (!stamp) return problems_.add(line, fmt::format("time {}", why_no_time(text)));
+    if (count_ > 0 && !stamps_)
+      return problems_.add(line,
+                           fmt::format("time {}: the rows above have numbers", show_text(text)));
     stamps_ = true;
     const auto offset_min = stamp->offset_min ? stamp->offset_min : options_.zone_min;
     if (!offset_min && !zone_asked_)

@@ -7,7 +7,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <string>
 
 #include <fmt/core.h>
 #include <fmt/format.h>

@@ -230,14 +230,12 @@ void DecimalScan::add(std::int64_t line, std::string_view cell) {
 std::optional<char> DecimalScan::decimal(FileProblems& problems) const {
   const Seen& commas = comma_.line > 0 ? comma_ : thousands_;
   if (commas.line == 0) return '.';
-  if (point_.line > 0) {
-    problems.add(
+  if (point_.line > 0)
+    return problems.add(
         std::max(point_.line, commas.line),
         fmt::format("{} in line {} has a decimal point, {} in line {} a comma: use one of "
                     "them throughout",
                     show_text(point_.text), point_.line, show_text(commas.text), commas.line));
-    return std::nullopt;
-  }
   if (comma_.line > 0) return ',';
   problems.add(thousands_.line,
                fmt::format("{} may have a decimal comma or a comma between thousands: declare "

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "drivers/lcm/sequence_counter.h"
 
-#include <algorithm>
-#include <cstddef>
 #include <utility>
 
 namespace framewatch::drivers {

@@ -33,32 +33,31 @@ double grid_position(const Record& grid, double time_s) {
 
 std::optional<Placed> place(const Record& grid, const Record& record, const std::string& where,
                             std::vector<Problem>& problems) {
-  if (std::abs(record.rate_hz / grid.rate_hz - 1) > kRateTolerance) {
-    problems.push_back({where, fmt::format("rates differ: {:.6g} Hz, but the first has {:.6g} Hz",
-                                           record.rate_hz, grid.rate_hz)});
+  const auto refuse = [&](const std::string& why) {
+    problems.push_back({where, why});
     return std::nullopt;
-  }
+  };
+  if (std::abs(record.rate_hz / grid.rate_hz - 1) > kRateTolerance)
+    return refuse(fmt::format("rates differ: {:.6g} Hz, but the first has {:.6g} Hz",
+                              record.rate_hz, grid.rate_hz));
   const double begin = grid_position(grid, record.time_s.front());
   const Placed placed{std::llround(begin),
                       std::llround(begin) + static_cast<std::int64_t>(record.time_s.size()) - 1};
   const std::int64_t grid_last = static_cast<std::int64_t>(grid.time_s.size()) - 1;
-  if (placed.last < 0 || placed.first > grid_last) {
-    problems.push_back(
-        {where, fmt::format("the clocks do not overlap: {:.6f} to {:.6f} s, but the first has "
-                            "{:.6f} to {:.6f} s",
-                            record.time_s.front(), record.time_s.back(), grid.time_s.front(),
-                            grid.time_s.back())});
-    return std::nullopt;
-  }
+  if (placed.last < 0 || placed.first > grid_last)
+    return refuse(fmt::format(
+        "the clocks do not overlap: {:.6f} to {:.6f} s, but the first has "
+        "{:.6f} to {:.6f} s",
+        record.time_s.front(), record.time_s.back(), grid.time_s.front(), grid.time_s.back()));
   for (const std::int64_t at :
        {std::max<std::int64_t>(0, placed.first), std::min(grid_last, placed.last)}) {
     const double theirs = record.time_s[static_cast<std::size_t>(at - placed.first)];
     const double apart = (theirs - grid.time_s[static_cast<std::size_t>(at)]) * grid.rate_hz;
     if (std::abs(apart) <= RecordBuilder::kStepTolerance) continue;
-    problems.push_back({where, fmt::format("the clocks are not synchronized: at {:.6f} s its "
-                                           "samples lie {:.2f} steps off the first one's",
-                                           theirs, apart)});
-    return std::nullopt;
+    return refuse(
+        fmt::format("the clocks are not synchronized: at {:.6f} s its samples lie "
+                    "{:.2f} steps off the first one's",
+                    theirs, apart));
   }
   return placed;
 }
@@ -195,17 +194,13 @@ void RecordBuilder::fill_lost_samples(double step) {
 std::optional<Record> RecordBuilder::finish() {
   if (problems_.any()) return std::nullopt;
   const std::size_t least = expected_rate_hz_ > 0 ? 1 : 2;
-  if (rows() < least) {
-    problems_.add(
+  if (rows() < least)
+    return problems_.add(
         0, fmt::format("a record needs at least {} samples, this one has {}", least, rows()));
-    return std::nullopt;
-  }
   const double step = even_step();
-  if (step * kMaxRateHz < 1) {
-    problems_.add(
+  if (step * kMaxRateHz < 1)
+    return problems_.add(
         0, fmt::format("step {:.3g} s: rates above {:g} Hz are not supported", step, kMaxRateHz));
-    return std::nullopt;
-  }
   for (std::size_t i = 0; i < record_.names.size(); ++i) {
     const auto& values = record_.accel_mps2[i];
     const auto missing =

@@ -6,8 +6,6 @@
 #include <cctype>
 #include <chrono>
 #include <cmath>
-#include <string>
-#include <utility>
 
 #include "drivers/files/file_problems.h"
 #include "drivers/files/number_text.h"

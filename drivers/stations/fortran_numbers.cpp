@@ -49,11 +49,9 @@ std::optional<std::vector<double>> read_fortran_numbers(LineReader& lines,
                                                         const FortranFormat& format,
                                                         std::size_t count, std::string_view what,
                                                         FileProblems& problems) {
-  if (count > RecordBuilder::kMaxValues) {
-    problems.add(lines.number(),
-                 fmt::format("{}: at most {} numbers", what, RecordBuilder::kMaxValues));
-    return std::nullopt;
-  }
+  if (count > RecordBuilder::kMaxValues)
+    return problems.add(lines.number(),
+                        fmt::format("{}: at most {} numbers", what, RecordBuilder::kMaxValues));
   std::vector<double> numbers;
   for (std::string_view line; numbers.size() < count && lines.next(line);) {
     const std::size_t on_line = std::min(format.per_line, count - numbers.size());
@@ -61,13 +59,11 @@ std::optional<std::vector<double>> read_fortran_numbers(LineReader& lines,
       const std::size_t begin = std::min(i * format.width, line.size());
       const std::string_view field = trimmed(line.substr(begin, format.width));
       const auto number = parse_number(field);
-      if (!number || !std::isfinite(*number)) {
-        problems.add(lines.number(),
-                     field.empty()
-                         ? fmt::format("{}: only {} of {} numbers", what, numbers.size(), count)
-                         : fmt::format("{}: {} is not a finite number", what, show_text(field)));
-        return std::nullopt;
-      }
+      if (!number || !std::isfinite(*number))
+        return problems.add(
+            lines.number(),
+            field.empty() ? fmt::format("{}: only {} of {} numbers", what, numbers.size(), count)
+                          : fmt::format("{}: {} is not a finite number", what, show_text(field)));
       numbers.push_back(*number);
     }
   }

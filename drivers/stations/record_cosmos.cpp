@@ -162,10 +162,8 @@ std::optional<CosmosHeader> read_cosmos_header(LineReader& lines, std::string_vi
   const auto with = first.find("with");
   const auto count = parse_integer(
       with == std::string_view::npos ? "" : first_word(trimmed(first.substr(with + 4))));
-  if (!count || *count < 2 || *count > 100) {
-    problems.add(header.line, "COSMOS: the first line must give the number of text lines");
-    return std::nullopt;
-  }
+  if (!count || *count < 2 || *count > 100)
+    return problems.add(header.line, "COSMOS: the first line must give the number of text lines");
   std::string_view line;
   while (header.text.size() < static_cast<std::size_t>(*count) && lines.next(line))
     header.text.emplace_back(line);
@@ -333,12 +331,11 @@ class CosmosReader {
     const std::int64_t at = lines_.number();
     const auto count = parse_integer(first_word(trimmed(line)));
     const auto format = find_fortran_format(line);
-    if (!header_ || !count || *count < 1 || !format || !holds(line, "pts")) {
-      problems_.add(at, fmt::format("COSMOS: {} is neither a header nor a line with the number and "
-                                    "format of values",
-                                    show_text(line)));
-      return std::nullopt;
-    }
+    if (!header_ || !count || *count < 1 || !format || !holds(line, "pts"))
+      return problems_.add(
+          at, fmt::format("COSMOS: {} is neither a header nor a line with the number and "
+                          "format of values",
+                          show_text(line)));
     const bool is_accel = holds(line, "accel") || holds(line, "Accel") || holds(line, "ACCEL");
     auto values = read_fortran_numbers(lines_, *format, static_cast<std::size_t>(*count),
                                        "COSMOS values", problems_);
@@ -391,20 +388,16 @@ class CosmosReader {
     const auto utc_s = utc_of(
         utc_of_date(static_cast<int>(*year), static_cast<int>(*month), static_cast<int>(*day)),
         *hour, *minute, *second);
-    if (!utc_s) {
-      problems_.add(header_->line, "COSMOS: the header's start is not a valid time");
-      return std::nullopt;
-    }
+    if (!utc_s)
+      return problems_.add(header_->line, "COSMOS: the header's start is not a valid time");
     const std::string_view said = after(*header_, "start time:");
     const bool utc = holds(said, "UTC") || holds(said, "GMT");
     if (utc && options_.zone_min)
       problems_.add(header_->line, "COSMOS: the header states its zone: --zone does not apply");
-    if (!utc && !options_.zone_min) {
-      problems_.add(header_->line,
-                    "COSMOS: the header does not say the zone of its start: declare "
-                    "it with --zone Z or, for example, --zone +09:00");
-      return std::nullopt;
-    }
+    if (!utc && !options_.zone_min)
+      return problems_.add(header_->line,
+                           "COSMOS: the header does not say the zone of its start: declare "
+                           "it with --zone Z or, for example, --zone +09:00");
     return *utc_s - 60.0 * options_.zone_min.value_or(0);
   }
 

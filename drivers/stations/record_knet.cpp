@@ -2,7 +2,6 @@
 // Strong motion of Japan's K-NET and KiK-net (NIED): 17 lines of names and values, then whole
 // numbers. https://www.kyoshin.bosai.go.jp/kyoshin/man/knetform_en.html
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include <fmt/core.h>

@@ -54,17 +54,45 @@ enum class SacText : std::size_t { station = 0, location = 3, channel = 20, netw
 class SacHeader {
  public:
   /// Returns nullopt when the bytes are not such a header.
-  static std::optional<SacHeader> read(std::string_view bytes);
+  static std::optional<SacHeader> read(std::string_view bytes) {
+    if (bytes.size() < kSacHeaderBytes) return std::nullopt;
+    SacHeader header;
+    header.bytes_ = bytes.substr(0, kSacHeaderBytes);
+    for (const bool swapped : {false, true}) {
+      header.swapped_ = swapped;
+      const auto version = header.integer(SacInteger::version),
+                 points = header.integer(SacInteger::points);
+      if ((version == 6 || version == 7) && points > 0 && header.number(SacFloat::step_s) > 0)
+        return header;
+    }
+    return std::nullopt;
+  }
 
   bool other_byte_order() const { return swapped_; }
   /// Returns the shortest decimal that rounds to the float: 0.005, not 0.004999999888.
-  std::optional<double> number(SacFloat field) const;
-  std::optional<int> integer(SacInteger field) const;
+  std::optional<double> number(SacFloat field) const {
+    const auto value = std::bit_cast<float>(word(static_cast<std::size_t>(field)));
+    if (!std::isfinite(value) || value == static_cast<float>(kSacUndefined)) return std::nullopt;
+    return parse_number(fmt::format("{}", value));
+  }
+
+  std::optional<int> integer(SacInteger field) const {
+    const auto value = std::bit_cast<std::int32_t>(word(static_cast<std::size_t>(field)));
+    return value == kSacUndefined ? std::nullopt : std::optional<int>(value);
+  }
+
   /// Returns a text without the blanks that pad it.
-  std::string text(SacText field) const;
+  std::string text(SacText field) const {
+    std::string_view text(bytes_);
+    text = text.substr(kTextBegin + static_cast<std::size_t>(field) * kTextBytes, kTextBytes);
+    text = trimmed(text.substr(0, text.find('\0')));
+    return std::string(text.starts_with("-12345") ? std::string_view() : text);
+  }
 
  private:
-  std::uint32_t word(std::size_t at) const;
+  std::uint32_t word(std::size_t at) const {
+    return word_at(bytes_.data() + at * kWordBytes, swapped_);
+  }
 
   std::string bytes_;
   bool swapped_ = false;
@@ -73,42 +101,6 @@ class SacHeader {
 /// Returns a value of four bytes in a file of that byte order.
 float sac_value(const char* bytes, bool other_byte_order) {
   return std::bit_cast<float>(word_at(bytes, other_byte_order));
-}
-
-std::optional<SacHeader> SacHeader::read(std::string_view bytes) {
-  if (bytes.size() < kSacHeaderBytes) return std::nullopt;
-  SacHeader header;
-  header.bytes_ = bytes.substr(0, kSacHeaderBytes);
-  for (const bool swapped : {false, true}) {
-    header.swapped_ = swapped;
-    const auto version = header.integer(SacInteger::version),
-               points = header.integer(SacInteger::points);
-    if ((version == 6 || version == 7) && points > 0 && header.number(SacFloat::step_s) > 0)
-      return header;
-  }
-  return std::nullopt;
-}
-
-std::uint32_t SacHeader::word(std::size_t at) const {
-  return word_at(bytes_.data() + at * kWordBytes, swapped_);
-}
-
-std::optional<double> SacHeader::number(SacFloat field) const {
-  const auto value = std::bit_cast<float>(word(static_cast<std::size_t>(field)));
-  if (!std::isfinite(value) || value == static_cast<float>(kSacUndefined)) return std::nullopt;
-  return parse_number(fmt::format("{}", value));
-}
-
-std::optional<int> SacHeader::integer(SacInteger field) const {
-  const auto value = std::bit_cast<std::int32_t>(word(static_cast<std::size_t>(field)));
-  return value == kSacUndefined ? std::nullopt : std::optional<int>(value);
-}
-
-std::string SacHeader::text(SacText field) const {
-  std::string_view text(bytes_);
-  text = text.substr(kTextBegin + static_cast<std::size_t>(field) * kTextBytes, kTextBytes);
-  text = trimmed(text.substr(0, text.find('\0')));
-  return std::string(text.starts_with("-12345") ? std::string_view() : text);
 }
 
 constexpr int kTimeSeries = 1, kDisplacement = 6, kVelocity = 7;
@@ -141,33 +133,29 @@ std::optional<double> start_of(const SacHeader& header, FileProblems& problems) 
   if (!year || !day || !hour || !minute || !second) return std::nullopt;
   const int millisecond = header.integer(SacInteger::millisecond).value_or(0);
   const auto utc_s = utc_of(utc_of_day_of_year(*year, *day), *hour, *minute, *second);
-  if (!utc_s || std::abs(millisecond) > 999) {
-    problems.add(0, "SAC: the header's start is not a valid time");
-    return std::nullopt;
-  }
+  if (!utc_s || std::abs(millisecond) > 999)
+    return problems.add(0, "SAC: the header's start is not a valid time");
   return *utc_s + 1e-3 * millisecond + header.number(SacFloat::begin_s).value_or(0);
 }
 
 std::optional<std::vector<double>> read_values(GzipInput& file, const SacHeader& header,
                                                double unit_mps2, FileProblems& problems) {
   const auto points = static_cast<std::size_t>(header.integer(SacInteger::points).value_or(0));
-  if (points > RecordBuilder::kMaxValues) {
-    problems.add(0, fmt::format("a record holds at most {} values", RecordBuilder::kMaxValues));
-    return std::nullopt;
-  }
+  if (points > RecordBuilder::kMaxValues)
+    return problems.add(0,
+                        fmt::format("a record holds at most {} values", RecordBuilder::kMaxValues));
   std::vector<double> values;
   std::array<char, 4096> bytes{};
   while (values.size() < points) {
     const std::size_t wanted = std::min(bytes.size(), 4 * (points - values.size()));
     const std::int64_t got = file.read(bytes.data(), static_cast<std::int64_t>(wanted));
-    if (got != static_cast<std::int64_t>(wanted)) {
-      problems.add(0, !file.error().empty()
-                          ? file.error()
-                          : fmt::format("SAC: the header announces {} values, but the file ends "
-                                        "early",
-                                        points));
-      return std::nullopt;
-    }
+    if (got != static_cast<std::int64_t>(wanted))
+      return problems.add(
+          0, !file.error().empty()
+                 ? file.error()
+                 : fmt::format("SAC: the header announces {} values, but the file ends "
+                               "early",
+                               points));
     for (std::size_t at = 0; at < wanted; at += 4)
       values.push_back(
           unit_mps2 * static_cast<double>(sac_value(bytes.data() + at, header.other_byte_order())));
@@ -186,10 +174,9 @@ std::optional<Record> read_sac(const RecordOptions& options, FileProblems& probl
   std::string bytes(kSacHeaderBytes, '\0');
   const std::int64_t got = file.read(bytes.data(), std::ssize(bytes));
   const auto header = got == std::ssize(bytes) ? SacHeader::read(bytes) : std::nullopt;
-  if (!header) {
-    problems.add(0, file.error().empty() ? "is not a SAC file of version 6 or 7" : file.error());
-    return std::nullopt;
-  }
+  if (!header)
+    return problems.add(
+        0, file.error().empty() ? "is not a SAC file of version 6 or 7" : file.error());
   if (header->integer(SacInteger::file_type).value_or(kTimeSeries) != kTimeSeries ||
       header->integer(SacInteger::even).value_or(1) != 1)
     problems.add(0, "SAC: holds a spectrum or uneven steps, not an even time series");

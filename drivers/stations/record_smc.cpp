@@ -102,12 +102,11 @@ std::optional<SmcHeader> read_smc_header(LineReader& lines, FileProblems& proble
     if (!problems.any()) problems.add(0, "SMC: the file has fewer than 11 lines of text");
     return std::nullopt;
   }
-  if (!is_smc_title(header.text[0])) {
-    problems.add(1, fmt::format("SMC: {} is neither 1 UNCORRECTED ACCELEROGRAM nor 2 CORRECTED "
-                                "ACCELEROGRAM",
-                                show_text(header.text[0])));
-    return std::nullopt;
-  }
+  if (!is_smc_title(header.text[0]))
+    return problems.add(1,
+                        fmt::format("SMC: {} is neither 1 UNCORRECTED ACCELEROGRAM nor 2 CORRECTED "
+                                    "ACCELEROGRAM",
+                                    show_text(header.text[0])));
   auto integers =
       read_fortran_numbers(lines, {8, 10}, kSmcIntegers, "SMC: whole numbers", problems);
   if (!integers) return std::nullopt;

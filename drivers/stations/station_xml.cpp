@@ -5,8 +5,10 @@
 
 #include <expat.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
 #include <memory>
 #include <utility>
@@ -73,6 +75,8 @@ class StationXmlReader {
   }
 
  private:
+  using Path = std::initializer_list<std::string_view>;
+
   struct FreeParser {
     void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
   };
@@ -103,9 +107,9 @@ class StationXmlReader {
         if (local_name(a[0]) == wanted) return a[1];
       return {};
     };
-    if (is_at({"Network"})) network_ = attribute("code");
-    if (is_at({"Network", "Station"})) station_ = attribute("code");
-    if (!is_at({"Network", "Station", "Channel"})) return;
+    if (is_open({"Network"}, 1)) network_ = attribute("code");
+    if (is_open({"Network", "Station"}, 1)) station_ = attribute("code");
+    if (!is_open({"Network", "Station", "Channel"}, 1)) return;
     if (channels_.size() >= kMaxChannels)
       return stop(fmt::format("has more than {} channels", kMaxChannels));
     StationXmlChannel& channel = channels_.emplace_back();
@@ -132,7 +136,7 @@ class StationXmlReader {
     if (open_.size() <= 4 || !begins_with_channel()) return;
     StationXmlChannel& channel = channels_.back();
     AxisHeader& header = channel.header;
-    const auto is = [&](std::initializer_list<std::string_view> path) { return is_below(path); };
+    const auto is = [&](Path path) { return is_open(path, 4); };
     if (is({"Description"})) header.place = text;
     if (is({"Latitude"})) header.latitude_deg = number(text, "Latitude", -90, 90);
     if (is({"Longitude"})) header.longitude_deg = number(text, "Longitude", -360, 360);
@@ -152,9 +156,8 @@ class StationXmlReader {
                                double most) {
     const auto value = parse_number(text);
     if (value && *value >= least && *value <= most) return value;
-    problems_.add(line(), fmt::format("{} {} is not a number from {:g} to {:g}", what,
-                                      show_text(text), least, most));
-    return std::nullopt;
+    return problems_.add(line(), fmt::format("{} {} is not a number from {:g} to {:g}", what,
+                                             show_text(text), least, most));
   }
 
   /// Parses a time such as "2018-11-30T00:00:00.0000Z", in UTC when it has no zone. Returns nullopt
@@ -162,28 +165,17 @@ class StationXmlReader {
   std::optional<double> time_of(const std::string& text) {
     if (text.empty()) return std::nullopt;
     const auto stamp = parse_time_stamp(text);
-    if (!stamp) problems_.add(line(), fmt::format("{} is not a time", show_text(text)));
-    if (!stamp) return std::nullopt;
+    if (!stamp) return problems_.add(line(), fmt::format("{} is not a time", show_text(text)));
     return stamp->local_s - 60.0 * stamp->offset_min.value_or(0);
   }
 
-  bool is_at(std::initializer_list<std::string_view> path) const {
-    if (open_.size() != path.size() + 1) return false;
-    std::size_t i = 1;
-    for (const std::string_view name : path)
-      if (open_[i++] != name) return false;
-    return true;
+  /// Returns true if `path` is the open elements without the `first` outermost ones.
+  bool is_open(Path path, std::ptrdiff_t first) const {
+    return std::equal(open_.begin() + first, open_.end(), path.begin(), path.end());
   }
   bool begins_with_channel() const {
     return open_[1] == "Network" && open_[2] == "Station" && open_[3] == "Channel" &&
            !channels_.empty();
-  }
-  bool is_below(std::initializer_list<std::string_view> path) const {
-    if (open_.size() != path.size() + 4) return false;
-    std::size_t i = 4;
-    for (const std::string_view name : path)
-      if (open_[i++] != name) return false;
-    return true;
   }
 
   FileProblems& problems_;

@@ -25,7 +25,8 @@ inline std::string another_value(const daemon::Option& o) {
     case OptionType::integer:
     case OptionType::number:
     case OptionType::grid: {
-      const double low = o.min > -1e12 ? o.min : -1, high = o.max < 1e12 ? o.max : 1e6;
+      const double low = o.range.min > -1e12 ? o.range.min : -1;
+      const double high = o.range.max < 1e12 ? o.range.max : 1e6;
       // A fortieth of the range: few defaults are there.
       const double value = low + (high - low) / 40;
       std::string text = o.type == OptionType::integer

@@ -6,89 +6,87 @@ namespace {
 
 using enum OptionType;
 
-constexpr std::string_view kGroups =
-    "all|frame_stiffness|panel_stiffness|frame_damping|panel_damping";
+const Option kExpect[] = {
+    {.key = "reason",
+     .type = text,
+     .required = true,
+     .meaning = "Why these numbers are right; not empty."},
+};
 
-Option at_least_0(std::string_view section, std::string_view key, OptionType type,
-                  std::string_view unit, std::string_view meaning) {
-  return {.section = section, .key = key, .type = type, .unit = unit, .min = 0, .meaning = meaning};
-}
+const Option kExpectParameter[] = {
+    {.key = "name", .type = text, .meaning = "Parameter name; this or `group`."},
+    {.key = "group",
+     .choices = "all|frame_stiffness|panel_stiffness|frame_damping|panel_damping",
+     .meaning = "All parameters of a group."},
+    {.key = "median", .meaning = "Median of the observable windows."},
+    {.key = "q1", .meaning = "Lower quartile."},
+    {.key = "q3", .meaning = "Upper quartile."},
+    {.key = "value", .meaning = "Value of every observable window."},
+    {.key = "tolerance", .range = {0}, .meaning = "Tolerance of these, in the parameter's unit."},
+    {.key = "tolerance_ratio",
+     .range = {0},
+     .meaning = "Tolerance relative to the expected value."},
+    {.key = "tolerance_std_errors",
+     .range = {0},
+     .meaning = "Tolerance in published standard errors: a window's own for `value`, otherwise "
+                "the median one."},
+    {.key = "observable_ratio", .range = {0, 1}, .meaning = "Share of windows with a value."},
+    {.key = "observable_tolerance",
+     .default_value = "0",
+     .range = {0, 1},
+     .meaning = "Tolerance of that share."},
+    {.key = "observable_min_ratio",
+     .range = {0, 1},
+     .meaning = "Smallest share of windows with a value."},
+    {.key = "observable_max_ratio",
+     .range = {0, 1},
+     .meaning = "Largest share of windows with a value."},
+};
 
-Option ratio(std::string_view key, std::string_view meaning) {
-  return {.section = "expect.parameter", .key = key, .min = 0, .max = 1, .meaning = meaning};
-}
+/// Keys of parameters and events.
+const Option kExpectTime[] = {
+    {.key = "from_s",
+     .unit = "s",
+     .range = {0},
+     .meaning = "Start after the first sample; windows count by their end."},
+    {.key = "to_s", .unit = "s", .range = {0}, .meaning = "End of the range."},
+};
 
-Option any_number(std::string_view key, std::string_view meaning) {
-  return {.section = "expect.parameter", .key = key, .meaning = meaning};
-}
+constexpr std::string_view kExactly = "Exactly the number in the summary.";
 
-std::vector<Option> make() {
-  std::vector<Option> all{
-      {.section = "expect",
-       .key = "reason",
-       .type = text,
-       .required = true,
-       .meaning = "Why these numbers are right; not empty."},
-      {.section = "expect.parameter",
-       .key = "name",
-       .type = text,
-       .meaning = "Parameter name; this or `group`."},
-      {.section = "expect.parameter",
-       .key = "group",
-       .type = choice,
-       .choices = kGroups,
-       .meaning = "All parameters of a group."},
-      any_number("median", "Median of the observable windows."),
-      any_number("q1", "Lower quartile."),
-      any_number("q3", "Upper quartile."),
-      any_number("value", "Value of every observable window."),
-      at_least_0("expect.parameter", "tolerance", number, "",
-                 "Tolerance of these, in the parameter's unit."),
-      at_least_0("expect.parameter", "tolerance_ratio", number, "",
-                 "Tolerance relative to the expected value."),
-      at_least_0("expect.parameter", "tolerance_std_errors", number, "",
-                 "Tolerance in published standard errors: a window's own for `value`, otherwise "
-                 "the median one."),
-      ratio("observable_ratio", "Share of windows with a value."),
-      {.section = "expect.parameter",
-       .key = "observable_tolerance",
-       .default_value = "0",
-       .min = 0,
-       .max = 1,
-       .meaning = "Tolerance of that share."},
-      ratio("observable_min_ratio", "Smallest share of windows with a value."),
-      ratio("observable_max_ratio", "Largest share of windows with a value."),
-  };
-  for (const std::string_view section : {"expect.parameter", "expect.event"}) {
-    all.push_back(at_least_0(section, "from_s", number, "s",
-                             "Start after the first sample; windows count by their end."));
-    all.push_back(at_least_0(section, "to_s", number, "s", "End of the range."));
-  }
-  for (const std::string_view name : {"windows", "gaps", "lost", "late", "repaired", "rejected",
-                                      "stuck", "clipped", "malformed", "foreign"})
-    all.push_back(
-        at_least_0("expect.counts", name, integer, "", "Exactly the number in the summary."));
-  all.push_back(
-      at_least_0("expect.counts", "windows_min", integer, "", "Least number of windows."));
-  all.push_back({.section = "expect.event",
-                 .key = "kind",
-                 .type = text,
-                 .meaning = "Kind of event. Default: any."});
-  all.push_back({.section = "expect.event",
-                 .key = "place",
-                 .type = text,
-                 .meaning = "Parameter or channel. Default: any."});
-  Option count = at_least_0("expect.event", "count", integer, "", "Number of events.");
-  count.default_value = "1";
-  all.push_back(count);
-  return all;
-}
+const Option kExpectCounts[] = {
+    {.key = "windows", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "gaps", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "lost", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "late", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "repaired", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "rejected", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "stuck", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "clipped", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "malformed", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "foreign", .type = integer, .range = {0}, .meaning = kExactly},
+    {.key = "windows_min", .type = integer, .range = {0}, .meaning = "Least number of windows."},
+};
+
+const Option kExpectEvent[] = {
+    {.key = "kind", .type = text, .meaning = "Kind of event. Default: any."},
+    {.key = "place", .type = text, .meaning = "Parameter or channel. Default: any."},
+    {.key = "count",
+     .type = integer,
+     .default_value = "1",
+     .range = {0},
+     .meaning = "Number of events."},
+};
 
 }  // namespace
 
-std::span<const Option> expectation_options() {
-  static const std::vector<Option> kAll = make();
-  return kAll;
+std::vector<OptionSection> expectation_options() {
+  return {{"expect", kExpect},
+          {"expect.parameter", kExpectParameter},
+          {"expect.parameter", kExpectTime},
+          {"expect.event", kExpectTime},
+          {"expect.counts", kExpectCounts},
+          {"expect.event", kExpectEvent}};
 }
 
 }  // namespace framewatch::daemon

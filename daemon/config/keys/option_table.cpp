@@ -2,11 +2,9 @@
 #include "daemon/config/keys/option_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <string>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 namespace framewatch::daemon {
 namespace {
@@ -59,6 +57,21 @@ std::string default_in_field(const Option& option) {
   return "";
 }
 
+/// Sets the fields of a row that follow from its section and its other fields.
+Option completed(Option o, const OptionSection& of) {
+  o.section = of.section;
+  if (!o.reload) o.reload = of.reload;
+  if (!o.choices.empty())
+    o.type = choice;
+  else if (!o.shape.empty())
+    o.type = grid;
+  else if (o.target && o.type == number)
+    o.type = o.target.type;
+  if (o.target && o.default_value.empty() && !o.required && !o.no_default)
+    o.default_value = default_in_field(o);
+  return o;
+}
+
 }  // namespace
 
 namespace fields_detail {
@@ -83,17 +96,11 @@ void take_reloadable(std::string_view section, const void* owner, const void* fr
 std::span<const Option> options() {
   static const std::vector<Option> kAll = [] {
     std::vector<Option> all;
-    for (const auto table :
-         {structure_options, channel_options, estimator_options, lcm_options, command_options,
-          can_options, watch_options, gap_options, history_options, event_report_options,
-          fragility_options, action_options, fleet_options, scenario_options, effect_options,
-          expectation_options}) {
-      const std::span<const Option> some = table();
-      all.insert(all.end(), some.begin(), some.end());
-    }
-    for (Option& o : all)
-      if (o.target && o.default_value.empty() && !o.required && !o.no_default)
-        o.default_value = default_in_field(o);
+    for (const auto table : {structure_options, channel_options, estimator_options, lcm_options,
+                             can_options, watch_options, history_options, event_report_options,
+                             fleet_options, scenario_options, effect_options, expectation_options})
+      for (const OptionSection& some : table())
+        for (const Option& row : some.rows) all.push_back(completed(row, some));
     return all;
   }();
   return kAll;
@@ -119,17 +126,13 @@ std::vector<std::string> choices(const Option& option) {
 }
 
 std::string constraint(const Option& option) {
-  if (!option.choices.empty()) {
-    std::string list;
-    for (const std::string& choice : choices(option))
-      list += (list.empty() ? "\"" : ", \"") + choice + "\"";
-    return "one of " + list;
-  }
+  if (!option.choices.empty())
+    return fmt::format("one of \"{}\"", fmt::join(choices(option), "\", \""));
   std::string rule;
-  if (option.min > -kUnlimited)
-    rule = fmt::format("{} {:.10g}", option.above_min ? ">" : ">=", option.min);
-  if (option.max < kUnlimited)
-    rule += fmt::format("{}<= {:.10g}", rule.empty() ? "" : " and ", option.max);
+  if (option.range.min > -kUnlimited)
+    rule = fmt::format("{} {:.10g}", option.range.above_min ? ">" : ">=", option.range.min);
+  if (option.range.max < kUnlimited)
+    rule += fmt::format("{}<= {:.10g}", rule.empty() ? "" : " and ", option.range.max);
   if (!rule.empty() && !option.unit.empty()) rule += fmt::format(" {}", option.unit);
   return rule;
 }

@@ -19,11 +19,25 @@ enum class Reach {
   restart,   ///< structure, channels, grid or messages change; the program must be restarted
 };
 
+/// Allowed values of a number.
+struct OptionRange {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;  ///< values must exceed min
+};
+
+/// Returns the range of values that exceed `min`.
+constexpr OptionRange above(double min, double max = std::numeric_limits<double>::infinity()) {
+  return {min, max, true};
+}
+
 /// One key of a file. Reading, validation, documentation and reloading all follow from this entry;
 /// the default comes from the target's field. A new key is one entry and one field.
 struct Option {
-  std::string_view section;  ///< "structure", "structure.design", "channel", "channel.source", ...
+  std::string_view section = "";  ///< "structure", "channel.source", ...; set by options()
   std::string_view key;
+  /// options() sets it if it follows from the rest: choice with choices, grid with a shape, or the
+  /// type of the target's field.
   OptionType type = OptionType::number;
   std::string_view unit = "";
   std::string_view shape = "";     ///< shape of a grid or list, for readers: "[story][y][x]"
@@ -31,37 +45,39 @@ struct Option {
   std::string paper_default = {};  ///< default for variant = "paper", if it differs
   bool no_default = false;         ///< optional, and the field's initial value is not a default
   bool required = false;
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool above_min = false;         ///< values must exceed min
+  OptionRange range = {};
   std::string_view choices = "";  ///< allowed texts, separated by |
   std::string_view meaning = "";
-  std::optional<Reach> reload = {};  ///< set for every key of the configuration file, and no other
-  bool is_path = false;              ///< a path relative to the configuration file
-  Target target = {};                ///< field that ConfigSection::read_into fills
-  std::string_view by_hand = "";     ///< without a target: why special code reads the key
+  /// Only for keys of the configuration file. Empty: that of the OptionSection.
+  std::optional<Reach> reload = {};
+  bool is_path = false;           ///< a path relative to the configuration file
+  Target target = {};             ///< field that ConfigSection::read_into fills
+  std::string_view by_hand = "";  ///< without a target: why special code reads the key
+};
+
+/// Rows of a section. A section may have several lists of rows.
+struct OptionSection {
+  std::string_view section;
+  std::span<const Option> rows;
+  std::optional<Reach> reload = {};  ///< Option::reload of rows without one
 };
 
 /// The tables, in the order of docs/configuration.md unless section_table.h gives another order.
-/// Their rows lack the defaults that options() adds.
-std::span<const Option> structure_options();
-std::span<const Option> channel_options();
-std::span<const Option> estimator_options();
-std::span<const Option> lcm_options();
-std::span<const Option> command_options();
-std::span<const Option> can_options();
-std::span<const Option> watch_options();  ///< also the keys of baseline files
-std::span<const Option> gap_options();
-std::span<const Option> history_options();
-std::span<const Option> event_report_options();
-std::span<const Option> fragility_options();
-std::span<const Option> action_options();
-std::span<const Option> fleet_options();
-std::span<const Option> scenario_options();
-std::span<const Option> effect_options();  ///< for configuration and scenario files
-std::span<const Option> expectation_options();
+/// Their rows lack the fields that options() sets.
+std::vector<OptionSection> structure_options();
+std::vector<OptionSection> channel_options();
+std::vector<OptionSection> estimator_options();
+std::vector<OptionSection> lcm_options();  ///< also of [commands]
+std::vector<OptionSection> can_options();
+std::vector<OptionSection> watch_options();  ///< also of [gap] and baseline files
+std::vector<OptionSection> history_options();
+std::vector<OptionSection> event_report_options();  ///< also of [fragility] and [actions]
+std::vector<OptionSection> fleet_options();
+std::vector<OptionSection> scenario_options();
+std::vector<OptionSection> effect_options();  ///< for configuration and scenario files
+std::vector<OptionSection> expectation_options();
 
-/// Returns the rows of all tables, in that order, with the defaults of their targets' fields.
+/// Returns the rows of all tables, in that order and complete.
 std::span<const Option> options();
 
 /// Returns the option, or null if `section` has no such key.

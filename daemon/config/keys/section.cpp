@@ -6,13 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 
-#include "daemon/base/toml_document.h"
 #include "daemon/config/keys/suggest.h"
 
 namespace framewatch::daemon {
@@ -104,6 +101,11 @@ std::vector<double> numbers_in(const std::string& list) {
   return out;
 }
 
+const TomlValue* table_in(const TomlValue& document, std::string_view section) {
+  const TomlEntry* entry = document.find(section);
+  return entry ? &entry->value : nullptr;
+}
+
 }  // namespace
 
 ConfigSection::ConfigSection(std::string_view section, std::string label, const TomlValue* table,
@@ -130,6 +132,10 @@ ConfigSection::ConfigSection(std::string_view section, std::string label, const 
       report(o, where_, fmt::format("is missing, it has no default: {}", expected(o)));
   }
 }
+
+ConfigSection::ConfigSection(std::string_view section, const TomlValue& document,
+                             std::vector<TextProblem>& problems)
+    : ConfigSection(section, std::string(section), table_in(document, section), {1, 1}, problems) {}
 
 bool ConfigSection::is_subsection(std::string_view key) const {
   const std::string name = fmt::format("{}.{}", section_, key);
@@ -158,10 +164,9 @@ void ConfigSection::check_value(const Option& o, const TomlValue& value) {
       if (value.kind != TomlKind::text) return wrong_type();
       const std::vector<std::string> known = choices(o);
       if (std::find(known.begin(), known.end(), value.text) != known.end()) return;
-      const std::string meant = nearest(value.text, known);
       report(o, value.place,
              fmt::format("must be {}, got \"{}\"{}", constraint(o), value.text,
-                         meant.empty() ? "" : fmt::format(", did you mean \"{}\"?", meant)));
+                         did_you_mean(value.text, known, "\"")));
       return;
     }
     case OptionType::integer:
@@ -189,7 +194,8 @@ void ConfigSection::check_value(const Option& o, const TomlValue& value) {
 
 void ConfigSection::check_number(const Option& o, const TomlValue& value) {
   const double v = value.number;
-  const bool inside = std::isfinite(v) && v >= o.min && v <= o.max && (v > o.min || !o.above_min);
+  const bool inside = std::isfinite(v) && v >= o.range.min && v <= o.range.max &&
+                      (v > o.range.min || !o.range.above_min);
   if (!inside)
     report(o, value.place, fmt::format("must be {}, got {}", constraint(o), value.described()));
 }

@@ -20,11 +20,16 @@ class ConfigSection {
   /// `where`. Messages begin with `label`.
   ConfigSection(std::string_view section, std::string label, const TomlValue* table,
                 TextPlace where, std::vector<TextProblem>& problems);
+  /// Reads the document's table of that name, which may be absent.
+  ConfigSection(std::string_view section, const TomlValue& document,
+                std::vector<TextProblem>& problems);
 
   /// Returns true if the key is given and has no problem so far.
   bool given(std::string_view key) const;
   /// Returns true if the key has no problem so far. An absent key is good unless it is required.
   bool good(std::string_view key) const { return !bad_.contains(std::string(key)); }
+  /// Returns true if no key of the table has a problem so far.
+  bool good() const { return bad_.empty(); }
   double number(std::string_view key) const;
   int integer(std::string_view key) const;
   bool boolean(std::string_view key) const;
@@ -43,6 +48,13 @@ class ConfigSection {
   template <class Settings>
   void read_into(Settings& settings) {
     store(&kOwner<Settings>, &settings);
+  }
+  /// Returns new settings after read_into().
+  template <class Settings>
+  Settings read() {
+    Settings settings;
+    read_into(settings);
+    return settings;
   }
   const TomlValue* value(std::string_view key) const;
   TextPlace where() const { return where_; }

@@ -2,11 +2,8 @@
 #include "daemon/config/keys/section_table.h"
 
 #include <cmath>
-#include <string>
 
 #include <fmt/core.h>
-
-#include "daemon/config/keys/option_table.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -51,10 +48,11 @@ std::string type_of(const Option& o) {
 
 /// Returns "0 to 3600", "above 0" or "at least 1". Empty if all values are allowed.
 std::string range_of(const Option& o) {
-  if (!std::isfinite(o.min)) return "";
-  if (!std::isfinite(o.max))
-    return fmt::format("{} {:.10g}", o.above_min ? "above" : "at least", o.min);
-  return fmt::format("{}{:.10g} to {:.10g}", o.above_min ? "above " : "", o.min, o.max);
+  if (!std::isfinite(o.range.min)) return "";
+  if (!std::isfinite(o.range.max))
+    return fmt::format("{} {:.10g}", o.range.above_min ? "above" : "at least", o.range.min);
+  return fmt::format("{}{:.10g} to {:.10g}", o.range.above_min ? "above " : "", o.range.min,
+                     o.range.max);
 }
 
 /// Returns "above 0 to 3600 s, default `5`". A range replaces the word "number". docs/effects.md

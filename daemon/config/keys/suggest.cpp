@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "daemon/config/keys/option_table.h"
 
@@ -60,6 +60,12 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   return best;
 }
 
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates,
+                         const char* quote) {
+  const std::string meant = nearest(word, candidates);
+  return meant.empty() ? "" : fmt::format(", did you mean {}{}{}?", quote, meant, quote);
+}
+
 std::string advice_on_unknown_key(std::string_view section, std::string_view key) {
   std::vector<std::string> keys;
   for (const Option& option : options()) {
@@ -72,9 +78,7 @@ std::string advice_on_unknown_key(std::string_view section, std::string_view key
     if (option.key == key) return fmt::format("it is a key of [{}]", option.section);
   if (const std::string meant = nearest(key, keys); !meant.empty())
     return fmt::format("did you mean {}?", meant);
-  std::string list;
-  for (const std::string& known : keys) list += (list.empty() ? "" : ", ") + known;
-  return "the keys are " + list;
+  return fmt::format("the keys are {}", fmt::join(keys, ", "));
 }
 
 }  // namespace framewatch::daemon

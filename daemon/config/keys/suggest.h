@@ -14,4 +14,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 /// misspelling, or else the keys there are.
 std::string advice_on_unknown_key(std::string_view section, std::string_view key);
 
+/// Returns ", did you mean X?" with `quote` around X, or an empty text if no candidate is close.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates,
+                         const char* quote = "");
+
 }  // namespace framewatch::daemon

@@ -31,6 +31,7 @@ inline constexpr char kOwner = 0;
 /// default-constructed target stands for no field.
 struct Target {
   const void* owner = nullptr;                ///< &kOwner of the struct; null without a field
+  OptionType type = OptionType::number;       ///< type of a key that the field holds, if not given
   bool (*takes)(OptionType) = nullptr;        ///< true if the field can hold a value of this type
   KeyValue (*initial)(OptionType) = nullptr;  ///< value of the field in a new settings struct
   void (*store)(const KeyValue&,
@@ -89,6 +90,15 @@ constexpr bool takes(OptionType type) {
   return false;
 }
 
+/// Returns the first type that the field can hold, in the order below.
+template <class Field>
+constexpr OptionType natural_type() {
+  using enum OptionType;
+  for (const OptionType type : {number, boolean, integer, text, texts, grid})
+    if (takes<Field>(type)) return type;
+  return choice;
+}
+
 template <class Field>
 void assign(const KeyValue& value, Field& field) {
   if constexpr (takes<Field>(OptionType::boolean))
@@ -136,6 +146,7 @@ constexpr Target make() {
   using Field =
       std::remove_reference_t<decltype(field_of<first, rest...>(*static_cast<Settings*>(nullptr)))>;
   return {.owner = &kOwner<Settings>,
+          .type = natural_type<Field>(),
           .takes = takes<Field>,
           .initial =
               [](OptionType type) {

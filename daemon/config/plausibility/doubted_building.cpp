@@ -9,18 +9,14 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
-#include <Eigen/Core>
 
-#include "daemon/base/toml_document.h"
 #include "daemon/config/plausibility/plausible_limits.h"
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/quantile.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
-#include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -42,10 +38,6 @@ TextPlace place_in(const TomlValue& section, std::string_view key, std::size_t i
   while (value->kind == TomlKind::array && !value->items.empty()) value = &value->items.front();
   return value->place;
 }
-
-/// Appends warnings about [structure.design], whose table is `section`.
-void doubt_design(const TomlValue& section, const estimator::Structure& structure,
-                  const Eigen::VectorXd& design, std::vector<TextProblem>& doubts);
 
 /// Dense matrices of larger buildings take too long.
 constexpr int kMaxDegreesOfFreedom = 200;
@@ -137,6 +129,7 @@ void doubt_unequal_stories(const TomlValue& section, const char* key, const esti
                    kMaxUnequalStories)});
 }
 
+/// Appends warnings about [structure.design], whose table is `section`.
 void doubt_design(const TomlValue& section, const estimator::Structure& s,
                   const Eigen::VectorXd& design, std::vector<TextProblem>& doubts) {
   const estimator::ParameterTable table(s);

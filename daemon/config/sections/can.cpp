@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,9 +10,14 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/file_digest.h"
 #include "daemon/config/keys/can_options.h"
-#include "daemon/config/sections/can_signals.h"
+#include "daemon/config/keys/section.h"
+#include "daemon/config/keys/suggest.h"
 #include "daemon/config/sections/sections.h"
+#include "daemon/config/sections/settings.h"
+#include "drivers/dbc/dbc.h"
+#include "drivers/files/standard_streams.h"
 #include "estimator/motion/acquisition.h"
 
 namespace framewatch::daemon {
@@ -22,6 +28,114 @@ using drivers::CanNodeMap;
 using drivers::CanTiming;
 using drivers::DbcMessage;
 using drivers::DbcSignal;
+
+/// A configured bus and the messages of its DBC files.
+struct CanBusReading {
+  ConfigSection section;
+  std::vector<drivers::DbcMessage> messages;
+  bool known = true;  ///< true if the DBC files could be read
+};
+
+/// A signal with its message, or the reason why it was not found.
+struct CanSignal {
+  const drivers::DbcMessage* message = nullptr;
+  const drivers::DbcSignal* signal = nullptr;
+  std::string problem;
+};
+
+/// Returns the message, or null if `name` is unknown.
+const DbcMessage* find_can_message(const CanBusReading& bus, const std::string& name) {
+  const auto at = std::find_if(bus.messages.begin(), bus.messages.end(),
+                               [&](const DbcMessage& m) { return m.name == name; });
+  return at == bus.messages.end() ? nullptr : &*at;
+}
+
+constexpr std::size_t kLongestInterface = 15;
+
+void read_dbc(const std::string& name, const Config& config, CanBusReading& bus,
+              std::vector<TextProblem>& problems) {
+  const std::filesystem::path beside = drivers::folder_of_paths_in(config.path);
+  const std::string path = (beside / name).string();
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  std::vector<drivers::Problem> found;
+  std::optional<drivers::Dbc> dbc;
+  if (text)
+    dbc = drivers::parse_dbc(path, *text, found);
+  else
+    bus.section.problem("dbc", fmt::format("{}: {}", path, error));
+  for (const drivers::Problem& p : found) problems.push_back({{}, p.message, p.where});
+  bus.known = bus.known && dbc;
+  if (!dbc) return;
+  for (drivers::DbcMessage& message : dbc->messages) {
+    if (find_can_message(bus, message.name) != nullptr)
+      bus.section.problem("dbc", fmt::format("two files have the message {}, the second is {}",
+                                             message.name, path));
+    else
+      bus.messages.push_back(std::move(message));
+  }
+}
+
+/// Reads [[can]] and its DBC files into config.can.buses. `config.path` and the options must be
+/// set.
+std::vector<CanBusReading> read_can_buses(const TomlValue& document, Config& config,
+                                          std::vector<TextProblem>& problems) {
+  std::vector<CanBusReading> out;
+  for (const TomlValue* table : tables_of(document, "can", problems)) {
+    out.push_back({ConfigSection("can", "can", table, {}, problems), {}, true});
+    CanBusReading& bus = out.back();
+    ConfigSection& section = bus.section;
+    auto map = section.read<drivers::CanBusMap>();
+    const double sync_s = section.number("sync_period_s");
+    map.sync_period_us = sync_s > 0 ? 1e6 * sync_s : 1e6 / config.pipeline.options.rate_hz;
+    if (section.good("sync_overflow") && map.sync_overflow == 1)
+      section.problem("sync_overflow", "must be 0 or 2 to 240, got 1");
+    if (section.given("interface") &&
+        (map.interface.empty() || map.interface.size() > kLongestInterface))
+      section.problem("interface",
+                      fmt::format("an interface's name has 1 to {} characters", kLongestInterface));
+    for (const drivers::CanBusMap& other : config.can.buses)
+      if (section.given("interface") && other.interface == map.interface)
+        section.problem("interface", fmt::format("{} has a [[can]] already", map.interface));
+    if (section.good("dbc"))
+      for (const std::string& name : section.texts("dbc")) read_dbc(name, config, bus, problems);
+    else
+      bus.known = false;
+    config.can.buses.push_back(map);
+  }
+  return out;
+}
+
+std::string unknown_can_message(const CanBusReading& bus, const std::string& name) {
+  std::vector<std::string> names;
+  for (const DbcMessage& m : bus.messages) names.push_back(m.name);
+  return fmt::format("no DBC file of the bus has the message {}{}", name,
+                     did_you_mean(name, names));
+}
+
+/// Finds "Message.Signal" in the DBC files of a bus.
+CanSignal find_can_signal(const CanBusReading& bus, const std::string& text) {
+  CanSignal found;
+  const std::size_t dot = text.find('.');
+  if (dot == std::string::npos) {
+    found.problem = fmt::format("expected Message.Signal, got \"{}\"", text);
+    return found;
+  }
+  const std::string message = text.substr(0, dot), signal = text.substr(dot + 1);
+  found.message = find_can_message(bus, message);
+  if (found.message == nullptr) {
+    found.problem = unknown_can_message(bus, message);
+    return found;
+  }
+  found.signal = found.message->find(signal);
+  if (found.signal == nullptr) {
+    std::vector<std::string> names;
+    for (const DbcSignal& s : found.message->signals) names.push_back(s.name);
+    found.problem =
+        fmt::format("message {} has no signal {}{}", message, signal, did_you_mean(signal, names));
+  }
+  return found;
+}
 
 /// A sensor node while it is read: its table, if any, and its channels.
 struct CanNodeReading : CanNodeSettings {
@@ -37,33 +151,304 @@ class CanConfigReader {
   CanConfigReader(const TomlValue& document, Config& config, std::vector<TextProblem>& problems)
       : document_(document), config_(config), problems_(problems) {}
 
-  void run();
+  void run() {
+    buses_ = read_can_buses(document_, config_, problems_);
+    for (const TomlValue* table : tables_of(document_, "can_node", problems_)) read_node(*table);
+    for (std::size_t i = 0; i < config_.sources.size(); ++i)
+      if (!config_.sources[i].can.empty()) read_source(i);
+    for (CanNodeReading& node : nodes_) finish_node(node);
+    check_ids();
+    drivers::CanMap& can = config_.can;
+    can.grid_period_us = 1e6 / config_.pipeline.options.rate_hz;
+    std::set<int> sync_buses;
+    for (const CanNodeMap& node : can.nodes) {
+      can.resample = can.resample || node.timing != CanTiming::sync;
+      if (node.timing == CanTiming::sync) sync_buses.insert(node.bus);
+    }
+    can.resample = can.resample || sync_buses.size() > 1;
+  }
 
  private:
-  std::optional<std::size_t> find_bus(const std::string& interface) const;
-  std::string unknown_bus(const std::string& interface) const;
+  std::optional<std::size_t> find_bus(const std::string& interface) const {
+    for (std::size_t b = 0; b < config_.can.buses.size(); ++b)
+      if (config_.can.buses[b].interface == interface) return b;
+    return std::nullopt;
+  }
 
-  void read_node(const TomlValue& table);
-  void read_times(CanNodeReading& node, ConfigSection& section);
+  std::string unknown_bus(const std::string& interface) const {
+    std::vector<std::string> names;
+    for (const drivers::CanBusMap& bus : config_.can.buses) names.push_back(bus.interface);
+    return fmt::format("no [[can]] has interface = \"{}\"{}", interface,
+                       did_you_mean(interface, names));
+  }
+
+  void read_node(const TomlValue& table) {
+    const TomlEntry* entry = table.kind == TomlKind::table ? table.find("name") : nullptr;
+    const std::string label =
+        entry != nullptr ? fmt::format("can_node '{}'", entry->value.text) : "can_node";
+    CanNodeReading node;
+    ConfigSection& section =
+        node.section.emplace("can_node", label, &table, TextPlace{}, problems_);
+    section.read_into<CanNodeSettings>(node);
+    section.read_into(node.map);
+    for (const CanNodeReading& other : nodes_)
+      if (section.given("name") && other.map.name == node.map.name)
+        section.problem("name", fmt::format("{} is the name of another node", node.map.name));
+    const std::string interface = section.text("can");
+    const auto bus = interface.empty() && buses_.size() == 1 ? 0 : find_bus(interface);
+    if (!bus) {
+      section.problem("can", buses_.empty()      ? "there is no [[can]]"
+                             : interface.empty() ? "is missing: there are several buses"
+                                                 : unknown_bus(interface));
+      return;
+    }
+    node.bus = *bus;
+    node.map.bus = static_cast<int>(*bus);
+    for (const std::string& name : node.messages)
+      if (buses_[node.bus].known && find_can_message(buses_[node.bus], name) == nullptr)
+        section.problem("messages", unknown_can_message(buses_[node.bus], name));
+    if (!node.j1939 && section.given("source_address") && node.source_address >= 0)
+      section.problem("source_address", "is J1939's: j1939 = true is missing");
+    read_times(node, section);
+    nodes_.push_back(std::move(node));
+  }
+
+  void read_times(CanNodeReading& node, ConfigSection& section) {
+    CanNodeMap& map = node.map;
+    const double rate_hz = section.number("rate_hz");
+    map.period_us = 1e6 / (rate_hz > 0 ? rate_hz : config_.pipeline.options.rate_hz);
+    const std::string timing = section.text("timing");
+    const bool has_clock = section.given("clock"), has_counter = section.given("counter");
+    map.timing = timing == "sync"                                         ? CanTiming::sync
+                 : timing == "clock" || (timing.empty() && has_clock)     ? CanTiming::clock
+                 : timing == "counter" || (timing.empty() && has_counter) ? CanTiming::counter
+                                                                          : CanTiming::period;
+    read_stamp("clock", map.timing == CanTiming::clock, false, node.clock, node, section);
+    read_stamp("counter", map.timing == CanTiming::counter, map.timing == CanTiming::sync,
+               node.counter, node, section);
+    if (map.timing == CanTiming::sync && section.given("rate_hz") && rate_hz > 0)
+      section.problem("rate_hz", "the SYNC sets the rate: see sync_period_s of [[can]]");
+    if (map.timing == CanTiming::sync) map.period_us = config_.can.buses[node.bus].sync_period_us;
+    if (map.timing == CanTiming::sync && map.samples_per_frame > 1)
+      section.problem("samples_per_frame", "must be 1 with timing = \"sync\"");
+    if (map.timing == CanTiming::sync && section.given("latency_s"))
+      section.problem("latency_s", "does not apply with timing = \"sync\": use delay_s");
+    if (map.timing != CanTiming::sync && section.given("delay_s"))
+      section.problem("delay_s", "applies only with timing = \"sync\": use latency_s");
+  }
+
   void read_stamp(const char* key, bool needed, bool allowed, CanSignal& found,
-                  const CanNodeReading& node, ConfigSection& section);
+                  const CanNodeReading& node, ConfigSection& section) {
+    if (!section.given(key) || section.text(key).empty()) {
+      if (needed) section.problem(key, fmt::format("is missing for timing = \"{}\"", key));
+      return;
+    }
+    if (!needed && !allowed) return section.problem(key, "is not used with this timing");
+    if (!buses_[node.bus].known) return;
+    found = find_can_signal(buses_[node.bus], section.text(key));
+    if (found.problem.empty() && std::find(node.messages.begin(), node.messages.end(),
+                                           found.message->name) == node.messages.end())
+      found.problem = fmt::format("{} is not one of the node's messages", found.message->name);
+    if (found.problem.empty() && found.signal->multiplexed_by)
+      found.problem = "must not be multiplexed";
+    if (!found.problem.empty()) section.problem(key, found.problem);
+  }
 
-  TextPlace place_of_source(std::size_t channel) const;
-  void source_problem(std::size_t channel, const std::string& message);
-  CanNodeReading* node_of(std::size_t channel, std::size_t bus, const std::string& message);
-  void read_source(std::size_t channel);
-  void add_reading(std::size_t channel, CanNodeReading& node, const CanSignal& found, int sample);
+  TextPlace place_of_source(std::size_t channel) const {
+    const TomlEntry* channels = document_.find("channel");
+    const TomlEntry* source = channels->value.items[channel].find("source");
+    return source == nullptr ? channels->place : source->place;
+  }
+
+  void source_problem(std::size_t channel, const std::string& message) {
+    problems_.push_back(
+        {place_of_source(channel),
+         fmt::format("channel '{}'.source: {}", config_.pipeline.axes[channel].name, message)});
+  }
+
+  CanNodeReading* node_of(std::size_t channel, std::size_t bus, const std::string& message) {
+    const std::string& wanted = config_.sources[channel].can_node;
+    std::vector<CanNodeReading*> candidates;
+    for (CanNodeReading& node : nodes_) {
+      if (!wanted.empty() ? node.map.name != wanted
+                          : node.bus != bus || std::find(node.messages.begin(), node.messages.end(),
+                                                         message) == node.messages.end())
+        continue;
+      candidates.push_back(&node);
+    }
+    if (wanted.empty() && candidates.empty()) {
+      CanNodeReading node;
+      node.map.name = message;
+      node.bus = bus;
+      node.map.bus = static_cast<int>(bus);
+      node.map.period_us = 1e6 / config_.pipeline.options.rate_hz;
+      node.messages = {message};
+      nodes_.push_back(std::move(node));
+      return &nodes_.back();
+    }
+    if (candidates.empty()) {
+      std::vector<std::string> names;
+      for (const CanNodeReading& node : nodes_) names.push_back(node.map.name);
+      source_problem(channel, fmt::format("can_node: no [[can_node]] is named \"{}\"{}", wanted,
+                                          did_you_mean(wanted, names)));
+      return nullptr;
+    }
+    if (candidates.size() > 1) {
+      source_problem(channel,
+                     fmt::format("can_node: is missing: {} and {} have the message {}",
+                                 candidates[0]->map.name, candidates[1]->map.name, message));
+      return nullptr;
+    }
+    if (candidates[0]->bus != bus) {
+      source_problem(channel, fmt::format("can: {} is not the bus of {}",
+                                          config_.sources[channel].can, wanted));
+      return nullptr;
+    }
+    return candidates[0];
+  }
+
+  void read_source(std::size_t channel) {
+    const AxisSource& source = config_.sources[channel];
+    const auto bus = find_bus(source.can);
+    if (!bus) return source_problem(channel, "can: " + unknown_bus(source.can));
+    if (!buses_[*bus].known) return;
+    const std::string message = source.dbc_signal.substr(0, source.dbc_signal.find('.'));
+    CanNodeReading* node = node_of(channel, *bus, message);
+    if (node == nullptr) return;
+    if (std::find(node->messages.begin(), node->messages.end(), message) == node->messages.end())
+      return source_problem(channel, fmt::format("dbc_signal: {} is not one of {}'s messages",
+                                                 message, node->map.name));
+    const int samples = node->map.samples_per_frame;
+    const std::size_t hash = source.dbc_signal.find('#');
+    if ((samples > 1) != (hash != std::string::npos))
+      return source_problem(channel, samples > 1
+                                         ? "dbc_signal: write # in place of the sample's number"
+                                         : "dbc_signal: # is for samples_per_frame > 1");
+    const auto nth = [&](int number) {
+      std::string text = source.dbc_signal;
+      if (hash != std::string::npos) text.replace(hash, 1, std::to_string(number));
+      return text;
+    };
+    const int first =
+        find_can_signal(buses_[*bus], nth(0)).signal == nullptr && samples > 1 ? 1 : 0;
+    for (int s = 0; s < samples; ++s) {
+      const CanSignal found = find_can_signal(buses_[*bus], nth(first + s));
+      if (!found.problem.empty()) return source_problem(channel, "dbc_signal: " + found.problem);
+      add_reading(channel, *node, found, s);
+    }
+  }
+
+  void add_reading(std::size_t channel, CanNodeReading& node, const CanSignal& found, int sample) {
+    const DbcMessage& m = *found.message;
+    const DbcSignal* multiplexor = m.multiplexor();
+    for (const CanMessageMap& map : node.map.messages)
+      for (const drivers::CanReading& r : map.readings)
+        if (map.name == m.name && r.name == found.signal->name)
+          return source_problem(
+              channel,
+              fmt::format("dbc_signal: {}.{} is the source of channel '{}' already", m.name, r.name,
+                          config_.pipeline.axes[static_cast<std::size_t>(r.axis)].name));
+    CanMessageMap& map = message_map(node, m, multiplexor, found.signal->multiplexed_by);
+    const estimator::SensorAxis& axis = config_.pipeline.axes[channel];
+    const estimator::SampleBound bound = estimator::sample_bound(axis);
+    const auto [least, most] = std::minmax({bound.least / axis.scale, bound.most / axis.scale});
+    map.readings.push_back(
+        {found.signal->field, static_cast<int>(channel), sample, found.signal->name, least, most});
+  }
+
   /// Returns the message's map at the multiplexor value of this signal. Creates it if it is
   /// missing.
-  drivers::CanMessageMap& message_map(CanNodeReading& node, const drivers::DbcMessage& m,
-                                      const drivers::DbcSignal* multiplexor,
-                                      const std::optional<std::int64_t>& at);
+  CanMessageMap& message_map(CanNodeReading& node, const DbcMessage& m,
+                             const DbcSignal* multiplexor, const std::optional<std::int64_t>& at) {
+    for (CanMessageMap& map : node.map.messages)
+      if (map.name == m.name && map.multiplexor.has_value() == at.has_value() &&
+          (!at || map.multiplexor_value == *at))
+        return map;
+    CanMessageMap map;
+    map.name = m.name;
+    map.extended = m.extended;
+    map.id = m.id + node.id_offset;
+    map.mask = m.extended ? 0x1FFFFFFFu : 0x7FFu;
+    if (node.j1939) {
+      const bool broadcast = ((m.id >> 16) & 0xFFu) >= 240;
+      map.mask = broadcast ? 0x03FFFF00u : 0x03FF0000u;
+      if (node.source_address >= 0) {
+        map.id = (map.id & ~0xFFu) | static_cast<std::uint32_t>(node.source_address);
+        map.mask |= 0xFFu;
+      }
+    }
+    map.length = m.length;
+    map.fd = m.length > 8;
+    if (at && multiplexor != nullptr) {
+      map.multiplexor = multiplexor->field;
+      map.multiplexor_value = *at;
+    }
+    node.map.messages.push_back(std::move(map));
+    return node.map.messages.back();
+  }
 
-  void node_problem(CanNodeReading& node, const std::string& key, const std::string& message);
+  void node_problem(CanNodeReading& node, const std::string& key, const std::string& message) {
+    if (node.section)
+      node.section->problem(key, message);
+    else
+      problems_.push_back({{}, fmt::format("can: message {}: {}", node.map.name, message)});
+  }
+
   /// Moves the frame with the time stamp to the front. Leaves out nodes without channels.
-  void finish_node(CanNodeReading& node);
-  void check_ids();
-  void check_pair(const drivers::CanNodeMap& a, const drivers::CanNodeMap& b);
+  void finish_node(CanNodeReading& node) {
+    if (node.map.messages.empty()) return;
+    const CanSignal& stamp = node.map.timing == CanTiming::clock ? node.clock : node.counter;
+    std::string opens = stamp.message != nullptr ? stamp.message->name : "";
+    if (stamp.signal != nullptr) {
+      const bool carried = std::any_of(node.map.messages.begin(), node.map.messages.end(),
+                                       [&](const CanMessageMap& m) { return m.name == opens; });
+      if (!carried) message_map(node, *stamp.message, nullptr, std::nullopt);
+      for (CanMessageMap& m : node.map.messages)
+        if (m.name == opens)
+          (node.map.timing == CanTiming::clock ? m.clock : m.counter) = stamp.signal->field;
+    }
+    const auto rank = [&](const CanMessageMap& m) {
+      if (m.name == opens) return std::ptrdiff_t{-1};
+      return std::find(node.messages.begin(), node.messages.end(), m.name) - node.messages.begin();
+    };
+    std::stable_sort(
+        node.map.messages.begin(), node.map.messages.end(),
+        [&](const CanMessageMap& a, const CanMessageMap& b) { return rank(a) < rank(b); });
+    const drivers::CanBusMap& bus = config_.can.buses[node.bus];
+    for (const CanMessageMap& m : node.map.messages) {
+      if (m.fd && !bus.fd)
+        node_problem(node, "messages",
+                     fmt::format("{} has {} bytes: fd = true is missing for {}", m.name, m.length,
+                                 bus.interface));
+      if (m.id > (m.extended ? 0x1FFFFFFFu : 0x7FFu))
+        node_problem(node, "id_offset", fmt::format("id {:X} of {} is too large", m.id, m.name));
+      if (node.j1939 && !m.extended)
+        node_problem(node, "j1939", fmt::format("{} has an 11-bit id", m.name));
+      if (node.map.timing == CanTiming::sync && !m.extended && m.id == bus.sync_id)
+        node_problem(node, "messages", fmt::format("{} has the id of the SYNC", m.name));
+    }
+    config_.can.nodes.push_back(node.map);
+  }
+
+  void check_ids() {
+    const auto& nodes = config_.can.nodes;
+    for (std::size_t b = 1; b < nodes.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a)
+        if (nodes[a].bus == nodes[b].bus) check_pair(nodes[a], nodes[b]);
+  }
+
+  void check_pair(const CanNodeMap& a, const CanNodeMap& b) {
+    for (const CanMessageMap& m : a.messages)
+      for (const CanMessageMap& n : b.messages) {
+        if (m.extended != n.extended || ((m.id ^ n.id) & m.mask & n.mask) != 0) continue;
+        const auto of = std::find_if(nodes_.begin(), nodes_.end(), [&](const CanNodeReading& node) {
+          return node.map.name == b.name;
+        });
+        return node_problem(
+            *of, "messages",
+            fmt::format("{} has the same id as {} of node {}: {:X}", n.name, m.name, a.name, n.id));
+      }
+  }
 
   const TomlValue& document_;
   Config& config_;
@@ -71,302 +456,6 @@ class CanConfigReader {
   std::vector<CanBusReading> buses_;
   std::vector<CanNodeReading> nodes_;
 };
-
-void CanConfigReader::read_node(const TomlValue& table) {
-  const TomlEntry* entry = table.kind == TomlKind::table ? table.find("name") : nullptr;
-  const std::string label =
-      entry != nullptr ? fmt::format("can_node '{}'", entry->value.text) : "can_node";
-  CanNodeReading node;
-  ConfigSection& section = node.section.emplace("can_node", label, &table, TextPlace{}, problems_);
-  section.read_into<CanNodeSettings>(node);
-  section.read_into(node.map);
-  for (const CanNodeReading& other : nodes_)
-    if (section.given("name") && other.map.name == node.map.name)
-      section.problem("name", fmt::format("{} is the name of another node", node.map.name));
-  const std::string interface = section.text("can");
-  const auto bus = interface.empty() && buses_.size() == 1 ? 0 : find_bus(interface);
-  if (!bus) {
-    section.problem("can", buses_.empty()      ? "there is no [[can]]"
-                           : interface.empty() ? "is missing: there are several buses"
-                                               : unknown_bus(interface));
-    return;
-  }
-  node.bus = *bus;
-  node.map.bus = static_cast<int>(*bus);
-  for (const std::string& name : node.messages)
-    if (buses_[node.bus].known && find_can_message(buses_[node.bus], name) == nullptr)
-      section.problem("messages", unknown_can_message(buses_[node.bus], name));
-  if (!node.j1939 && section.given("source_address") && node.source_address >= 0)
-    section.problem("source_address", "is J1939's: j1939 = true is missing");
-  read_times(node, section);
-  nodes_.push_back(std::move(node));
-}
-
-void CanConfigReader::read_times(CanNodeReading& node, ConfigSection& section) {
-  CanNodeMap& map = node.map;
-  const double rate_hz = section.number("rate_hz");
-  map.period_us = 1e6 / (rate_hz > 0 ? rate_hz : config_.pipeline.options.rate_hz);
-  const std::string timing = section.text("timing");
-  const bool has_clock = section.given("clock"), has_counter = section.given("counter");
-  map.timing = timing == "sync"                                         ? CanTiming::sync
-               : timing == "clock" || (timing.empty() && has_clock)     ? CanTiming::clock
-               : timing == "counter" || (timing.empty() && has_counter) ? CanTiming::counter
-                                                                        : CanTiming::period;
-  read_stamp("clock", map.timing == CanTiming::clock, false, node.clock, node, section);
-  read_stamp("counter", map.timing == CanTiming::counter, map.timing == CanTiming::sync,
-             node.counter, node, section);
-  if (map.timing == CanTiming::sync && section.given("rate_hz") && rate_hz > 0)
-    section.problem("rate_hz", "the SYNC sets the rate: see sync_period_s of [[can]]");
-  if (map.timing == CanTiming::sync) map.period_us = config_.can.buses[node.bus].sync_period_us;
-  if (map.timing == CanTiming::sync && map.samples_per_frame > 1)
-    section.problem("samples_per_frame", "must be 1 with timing = \"sync\"");
-  if (map.timing == CanTiming::sync && section.given("latency_s"))
-    section.problem("latency_s", "does not apply with timing = \"sync\": use delay_s");
-  if (map.timing != CanTiming::sync && section.given("delay_s"))
-    section.problem("delay_s", "applies only with timing = \"sync\": use latency_s");
-}
-
-void CanConfigReader::read_stamp(const char* key, bool needed, bool allowed, CanSignal& found,
-                                 const CanNodeReading& node, ConfigSection& section) {
-  if (!section.given(key) || section.text(key).empty()) {
-    if (needed) section.problem(key, fmt::format("is missing for timing = \"{}\"", key));
-    return;
-  }
-  if (!needed && !allowed) return section.problem(key, "is not used with this timing");
-  if (!buses_[node.bus].known) return;
-  found = find_can_signal(buses_[node.bus], section.text(key));
-  if (found.problem.empty() && std::find(node.messages.begin(), node.messages.end(),
-                                         found.message->name) == node.messages.end())
-    found.problem = fmt::format("{} is not one of the node's messages", found.message->name);
-  if (found.problem.empty() && found.signal->multiplexed_by)
-    found.problem = "must not be multiplexed";
-  if (!found.problem.empty()) section.problem(key, found.problem);
-}
-
-TextPlace CanConfigReader::place_of_source(std::size_t channel) const {
-  const TomlEntry* channels = document_.find("channel");
-  const TomlEntry* source = channels->value.items[channel].find("source");
-  return source == nullptr ? channels->place : source->place;
-}
-
-void CanConfigReader::source_problem(std::size_t channel, const std::string& message) {
-  problems_.push_back(
-      {place_of_source(channel),
-       fmt::format("channel '{}'.source: {}", config_.pipeline.axes[channel].name, message)});
-}
-
-CanNodeReading* CanConfigReader::node_of(std::size_t channel, std::size_t bus,
-                                         const std::string& message) {
-  const std::string& wanted = config_.sources[channel].can_node;
-  std::vector<CanNodeReading*> candidates;
-  for (CanNodeReading& node : nodes_) {
-    if (!wanted.empty() ? node.map.name != wanted
-                        : node.bus != bus || std::find(node.messages.begin(), node.messages.end(),
-                                                       message) == node.messages.end())
-      continue;
-    candidates.push_back(&node);
-  }
-  if (wanted.empty() && candidates.empty()) {
-    CanNodeReading node;
-    node.map.name = message;
-    node.bus = bus;
-    node.map.bus = static_cast<int>(bus);
-    node.map.period_us = 1e6 / config_.pipeline.options.rate_hz;
-    node.messages = {message};
-    nodes_.push_back(std::move(node));
-    return &nodes_.back();
-  }
-  if (candidates.empty()) {
-    std::vector<std::string> names;
-    for (const CanNodeReading& node : nodes_) names.push_back(node.map.name);
-    source_problem(channel, fmt::format("can_node: no [[can_node]] is named \"{}\"{}", wanted,
-                                        did_you_mean(wanted, names)));
-    return nullptr;
-  }
-  if (candidates.size() > 1) {
-    source_problem(channel, fmt::format("can_node: is missing: {} and {} have the message {}",
-                                        candidates[0]->map.name, candidates[1]->map.name, message));
-    return nullptr;
-  }
-  if (candidates[0]->bus != bus) {
-    source_problem(
-        channel, fmt::format("can: {} is not the bus of {}", config_.sources[channel].can, wanted));
-    return nullptr;
-  }
-  return candidates[0];
-}
-
-void CanConfigReader::read_source(std::size_t channel) {
-  const AxisSource& source = config_.sources[channel];
-  const auto bus = find_bus(source.can);
-  if (!bus) return source_problem(channel, "can: " + unknown_bus(source.can));
-  if (!buses_[*bus].known) return;
-  const std::string message = source.dbc_signal.substr(0, source.dbc_signal.find('.'));
-  CanNodeReading* node = node_of(channel, *bus, message);
-  if (node == nullptr) return;
-  if (std::find(node->messages.begin(), node->messages.end(), message) == node->messages.end())
-    return source_problem(channel, fmt::format("dbc_signal: {} is not one of {}'s messages",
-                                               message, node->map.name));
-  const int samples = node->map.samples_per_frame;
-  const std::size_t hash = source.dbc_signal.find('#');
-  if ((samples > 1) != (hash != std::string::npos))
-    return source_problem(channel, samples > 1
-                                       ? "dbc_signal: write # in place of the sample's number"
-                                       : "dbc_signal: # is for samples_per_frame > 1");
-  const auto nth = [&](int number) {
-    std::string text = source.dbc_signal;
-    if (hash != std::string::npos) text.replace(hash, 1, std::to_string(number));
-    return text;
-  };
-  const int first = find_can_signal(buses_[*bus], nth(0)).signal == nullptr && samples > 1 ? 1 : 0;
-  for (int s = 0; s < samples; ++s) {
-    const CanSignal found = find_can_signal(buses_[*bus], nth(first + s));
-    if (!found.problem.empty()) return source_problem(channel, "dbc_signal: " + found.problem);
-    add_reading(channel, *node, found, s);
-  }
-}
-
-void CanConfigReader::add_reading(std::size_t channel, CanNodeReading& node, const CanSignal& found,
-                                  int sample) {
-  const DbcMessage& m = *found.message;
-  const DbcSignal* multiplexor = m.multiplexor();
-  for (const CanMessageMap& map : node.map.messages)
-    for (const drivers::CanReading& r : map.readings)
-      if (map.name == m.name && r.name == found.signal->name)
-        return source_problem(
-            channel,
-            fmt::format("dbc_signal: {}.{} is the source of channel '{}' already", m.name, r.name,
-                        config_.pipeline.axes[static_cast<std::size_t>(r.axis)].name));
-  CanMessageMap& map = message_map(node, m, multiplexor, found.signal->multiplexed_by);
-  const estimator::SensorAxis& axis = config_.pipeline.axes[channel];
-  const estimator::SampleBound bound = estimator::sample_bound(axis);
-  const auto [least, most] = std::minmax({bound.least / axis.scale, bound.most / axis.scale});
-  map.readings.push_back(
-      {found.signal->field, static_cast<int>(channel), sample, found.signal->name, least, most});
-}
-
-CanMessageMap& CanConfigReader::message_map(CanNodeReading& node, const DbcMessage& m,
-                                            const DbcSignal* multiplexor,
-                                            const std::optional<std::int64_t>& at) {
-  for (CanMessageMap& map : node.map.messages)
-    if (map.name == m.name && map.multiplexor.has_value() == at.has_value() &&
-        (!at || map.multiplexor_value == *at))
-      return map;
-  CanMessageMap map;
-  map.name = m.name;
-  map.extended = m.extended;
-  map.id = m.id + node.id_offset;
-  map.mask = m.extended ? 0x1FFFFFFFu : 0x7FFu;
-  if (node.j1939) {
-    const bool broadcast = ((m.id >> 16) & 0xFFu) >= 240;
-    map.mask = broadcast ? 0x03FFFF00u : 0x03FF0000u;
-    if (node.source_address >= 0) {
-      map.id = (map.id & ~0xFFu) | static_cast<std::uint32_t>(node.source_address);
-      map.mask |= 0xFFu;
-    }
-  }
-  map.length = m.length;
-  map.fd = m.length > 8;
-  if (at && multiplexor != nullptr) {
-    map.multiplexor = multiplexor->field;
-    map.multiplexor_value = *at;
-  }
-  node.map.messages.push_back(std::move(map));
-  return node.map.messages.back();
-}
-
-void CanConfigReader::node_problem(CanNodeReading& node, const std::string& key,
-                                   const std::string& message) {
-  if (node.section)
-    node.section->problem(key, message);
-  else
-    problems_.push_back({{}, fmt::format("can: message {}: {}", node.map.name, message)});
-}
-
-void CanConfigReader::finish_node(CanNodeReading& node) {
-  if (node.map.messages.empty()) return;
-  const CanSignal& stamp = node.map.timing == CanTiming::clock ? node.clock : node.counter;
-  std::string opens = stamp.message != nullptr ? stamp.message->name : "";
-  if (stamp.signal != nullptr) {
-    const bool carried = std::any_of(node.map.messages.begin(), node.map.messages.end(),
-                                     [&](const CanMessageMap& m) { return m.name == opens; });
-    if (!carried) message_map(node, *stamp.message, nullptr, std::nullopt);
-    for (CanMessageMap& m : node.map.messages)
-      if (m.name == opens)
-        (node.map.timing == CanTiming::clock ? m.clock : m.counter) = stamp.signal->field;
-  }
-  const auto rank = [&](const CanMessageMap& m) {
-    if (m.name == opens) return std::ptrdiff_t{-1};
-    return std::find(node.messages.begin(), node.messages.end(), m.name) - node.messages.begin();
-  };
-  std::stable_sort(
-      node.map.messages.begin(), node.map.messages.end(),
-      [&](const CanMessageMap& a, const CanMessageMap& b) { return rank(a) < rank(b); });
-  const drivers::CanBusMap& bus = config_.can.buses[node.bus];
-  for (const CanMessageMap& m : node.map.messages) {
-    if (m.fd && !bus.fd)
-      node_problem(node, "messages",
-                   fmt::format("{} has {} bytes: fd = true is missing for {}", m.name, m.length,
-                               bus.interface));
-    if (m.id > (m.extended ? 0x1FFFFFFFu : 0x7FFu))
-      node_problem(node, "id_offset", fmt::format("id {:X} of {} is too large", m.id, m.name));
-    if (node.j1939 && !m.extended)
-      node_problem(node, "j1939", fmt::format("{} has an 11-bit id", m.name));
-    if (node.map.timing == CanTiming::sync && !m.extended && m.id == bus.sync_id)
-      node_problem(node, "messages", fmt::format("{} has the id of the SYNC", m.name));
-  }
-  config_.can.nodes.push_back(node.map);
-}
-
-void CanConfigReader::check_ids() {
-  const auto& nodes = config_.can.nodes;
-  for (std::size_t b = 1; b < nodes.size(); ++b)
-    for (std::size_t a = 0; a < b; ++a)
-      if (nodes[a].bus == nodes[b].bus) check_pair(nodes[a], nodes[b]);
-}
-
-void CanConfigReader::check_pair(const CanNodeMap& a, const CanNodeMap& b) {
-  for (const CanMessageMap& m : a.messages)
-    for (const CanMessageMap& n : b.messages) {
-      if (m.extended != n.extended || ((m.id ^ n.id) & m.mask & n.mask) != 0) continue;
-      const auto of = std::find_if(nodes_.begin(), nodes_.end(), [&](const CanNodeReading& node) {
-        return node.map.name == b.name;
-      });
-      return node_problem(
-          *of, "messages",
-          fmt::format("{} has the same id as {} of node {}: {:X}", n.name, m.name, a.name, n.id));
-    }
-}
-
-void CanConfigReader::run() {
-  buses_ = read_can_buses(document_, config_, problems_);
-  for (const TomlValue* table : tables_of(document_, "can_node", problems_)) read_node(*table);
-  for (std::size_t i = 0; i < config_.sources.size(); ++i)
-    if (!config_.sources[i].can.empty()) read_source(i);
-  for (CanNodeReading& node : nodes_) finish_node(node);
-  check_ids();
-  drivers::CanMap& can = config_.can;
-  can.grid_period_us = 1e6 / config_.pipeline.options.rate_hz;
-  std::set<int> sync_buses;
-  for (const CanNodeMap& node : can.nodes) {
-    can.resample = can.resample || node.timing != CanTiming::sync;
-    if (node.timing == CanTiming::sync) sync_buses.insert(node.bus);
-  }
-  can.resample = can.resample || sync_buses.size() > 1;
-}
-
-std::optional<std::size_t> CanConfigReader::find_bus(const std::string& interface) const {
-  for (std::size_t b = 0; b < config_.can.buses.size(); ++b)
-    if (config_.can.buses[b].interface == interface) return b;
-  return std::nullopt;
-}
-
-std::string CanConfigReader::unknown_bus(const std::string& interface) const {
-  std::vector<std::string> names;
-  for (const drivers::CanBusMap& bus : config_.can.buses) names.push_back(bus.interface);
-  return fmt::format("no [[can]] has interface = \"{}\"{}", interface,
-                     did_you_mean(interface, names));
-}
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"
@@ -24,12 +24,6 @@ using Channels = std::vector<ConfigSection>;
 /// Marks a frame that does not exist; find_problems() skips its place.
 constexpr int kNoFrame = -2;
 
-std::string list_of_frames(const estimator::Structure& s) {
-  std::string list;
-  for (int f = 0; f < s.frames(); ++f) list += (f ? ", " : "") + s.frame_name(f);
-  return list;
-}
-
 int frame_of(ConfigSection& section, const StructureReading& reading) {
   const estimator::Structure& s = reading.structure;
   const std::string name = section.text("frame");
@@ -38,11 +32,8 @@ int frame_of(ConfigSection& section, const StructureReading& reading) {
     names.push_back(s.frame_name(f));
     if (names.back() == name) return f;
   }
-  const std::string meant = nearest(name, names);
-  section.problem("frame",
-                  fmt::format("no frame is named \"{}\"{}; the frames are {}", name,
-                              meant.empty() ? "" : fmt::format(", did you mean \"{}\"?", meant),
-                              list_of_frames(s)));
+  section.problem("frame", fmt::format("no frame is named \"{}\"{}; the frames are {}", name,
+                                       did_you_mean(name, names, "\""), fmt::join(names, ", ")));
   return kNoFrame;
 }
 
@@ -114,14 +105,11 @@ AxisSource read_source(ConfigSection& channel, const std::string& label,
   const TomlValue* table = channel.value("source");
   if (table->find("can") || table->find("dbc_signal")) {
     ConfigSection section("channel.source.can", label + ".source", table, {}, problems);
-    AxisSource source;
-    if (!section.good("can") || !section.good("dbc_signal")) return source;
-    section.read_into(source);
-    return source;
+    if (!section.good("can") || !section.good("dbc_signal")) return {};
+    return section.read<AxisSource>();
   }
   ConfigSection section("channel.source", label + ".source", table, {}, problems);
-  AxisSource source;
-  section.read_into(source);
+  auto source = section.read<AxisSource>();
   if (source.lcm_channel.empty() || source.lcm_channel.size() > 63)
     section.problem("lcm", "an LCM channel's name has 1 to 63 characters");
   if (!section.good("node") || !section.good("axis") || !section.good("lcm"))
@@ -157,8 +145,7 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
                   Channels& channels, std::vector<TextProblem>& problems) {
   const std::string label = label_of(table);
   ConfigSection section("channel", label, &table, {}, problems);
-  estimator::SensorAxis axis;
-  section.read_into(axis);
+  auto axis = section.read<estimator::SensorAxis>();
   if (section.given("name"))
     if (const std::string rule = problem_of_name(axis.name); !rule.empty())
       section.problem("name", rule);
@@ -217,11 +204,8 @@ void find_cross_channels(Config& config, Channels& channels) {
       if (axes[b].name == name) axes[i].cross = static_cast<int>(b);
     }
     if (axes[i].cross >= 0) continue;
-    const std::string meant = nearest(name, names);
-    channels[i].problem(
-        "cross_channel",
-        fmt::format("no channel is named \"{}\"{}", name,
-                    meant.empty() ? "" : fmt::format(", did you mean \"{}\"?", meant)));
+    channels[i].problem("cross_channel", fmt::format("no channel is named \"{}\"{}", name,
+                                                     did_you_mean(name, names, "\"")));
   }
 }
 

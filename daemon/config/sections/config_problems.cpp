@@ -9,7 +9,6 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
-#include "daemon/base/toml_document.h"
 
 namespace framewatch::daemon {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"
@@ -74,7 +74,7 @@ class EffectReader {
       const std::size_t rule = p.message.find(": ");
       section_.problem(p.field, p.message.substr(rule + 2));
     }
-    if (problems_.size() > before || !good()) return std::nullopt;
+    if (problems_.size() > before || !section_.good()) return std::nullopt;
     return effect;
   }
 
@@ -83,11 +83,6 @@ class EffectReader {
     const TomlEntry* kind = table.kind == TomlKind::table ? table.find("kind") : nullptr;
     const bool named = kind && kind->value.kind == TomlKind::text;
     return named ? fmt::format("effect '{}'", kind->value.text) : "effect";
-  }
-
-  bool good() const {
-    return std::all_of(table_.entries.begin(), table_.entries.end(),
-                       [&](const TomlEntry& e) { return section_.good(e.key); });
   }
 
   estimator::PlaceKind place_kind(const estimator::EffectDescription& d) const {
@@ -108,15 +103,9 @@ class EffectReader {
     for (const TomlEntry& e : table_.entries) {
       if (e.key == "kind" || !find_option("effect", e.key)) continue;
       if (std::find(known.begin(), known.end(), e.key) == known.end())
-        section_.problem(e.key,
-                         fmt::format("no key of {}; its keys are kind, {}", d.name, join(known)));
+        section_.problem(e.key, fmt::format("no key of {}; its keys are kind, {}", d.name,
+                                            fmt::join(known, ", ")));
     }
-  }
-
-  static std::string join(const std::vector<std::string>& words) {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-    return out;
   }
 
   void read_place(estimator::EffectPlace& place) {
@@ -179,13 +168,10 @@ class EffectReader {
       names.push_back(name(i));
       if (names.back() == wanted) return i;
     }
-    const std::string meant = nearest(wanted, names);
     section_.problem(
-        key, count == 0
-                 ? fmt::format("this building has no {}", key)
-                 : fmt::format("none is named \"{}\"{}; there are {}", wanted,
-                               meant.empty() ? "" : fmt::format(", did you mean \"{}\"?", meant),
-                               join(names)));
+        key, count == 0 ? fmt::format("this building has no {}", key)
+                        : fmt::format("none is named \"{}\"{}; there are {}", wanted,
+                                      did_you_mean(wanted, names, "\""), fmt::join(names, ", ")));
     return -1;
   }
 

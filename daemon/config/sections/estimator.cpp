@@ -12,10 +12,8 @@ constexpr double kLongestOther = 20;
 }  // namespace
 
 LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("lcm");
-  ConfigSection section("lcm", "lcm", entry ? &entry->value : nullptr, {1, 1}, problems);
-  LcmSettings out;
-  section.read_into(out);
+  ConfigSection section("lcm", document, problems);
+  auto out = section.read<LcmSettings>();
   if (section.good("url") && out.url.find("://") == std::string::npos)
     section.problem("url", fmt::format("expected a provider such as udpm://, memq:// or "
                                        "file://, got \"{}\"",
@@ -28,21 +26,14 @@ LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& proble
 }
 
 CommandSettings read_commands(const TomlValue& document, std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("commands");
-  ConfigSection section("commands", "commands", entry ? &entry->value : nullptr, {1, 1}, problems);
-  CommandSettings out;
-  section.read_into(out);
-  return out;
+  return ConfigSection("commands", document, problems).read<CommandSettings>();
 }
 
 estimator::EstimatorOptions read_estimator(const TomlValue& document,
                                            std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("estimator");
-  ConfigSection section("estimator", "estimator", entry ? &entry->value : nullptr, {1, 1},
-                        problems);
-  estimator::EstimatorOptions o;
+  ConfigSection section("estimator", document, problems);
   if (section.text("variant") == "paper") section.use_paper_defaults();
-  section.read_into(o);
+  const auto o = section.read<estimator::EstimatorOptions>();
   if (section.good("rate_hz") && section.good("high_pass_hz") && o.high_pass_hz >= o.rate_hz / 2)
     section.problem("high_pass_hz",
                     fmt::format("must be below half the sampling rate, {:g} Hz", o.rate_hz / 2));

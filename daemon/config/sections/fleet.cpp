@@ -39,11 +39,9 @@ bool is_hub(const std::string& url) {
 
 std::optional<FleetSettings> read_fleet(const TomlValue& document, bool has_history,
                                         std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("fleet");
-  if (entry == nullptr) return std::nullopt;
-  ConfigSection section("fleet", "fleet", &entry->value, {1, 1}, problems);
-  FleetSettings out;
-  section.read_into(out);
+  if (!document.find("fleet")) return std::nullopt;
+  ConfigSection section("fleet", document, problems);
+  auto out = section.read<FleetSettings>();
   if (section.given("building") && !is_building(out.building))
     section.problem("building", "must be 1 to 32 of a-z, 0-9 and -, and not all");
   if (section.given("hubs")) {

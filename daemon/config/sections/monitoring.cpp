@@ -41,21 +41,15 @@ std::string problem_of_address(const std::string& url) {
 }  // namespace
 
 std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("gap");
-  if (entry == nullptr) return std::nullopt;
-  ConfigSection section("gap", "gap", &entry->value, {1, 1}, problems);
-  GapSettings out;
-  section.read_into(out);
-  return out;
+  if (!document.find("gap")) return std::nullopt;
+  return ConfigSection("gap", document, problems).read<GapSettings>();
 }
 
 std::optional<HistorySettings> read_history(const TomlValue& document,
                                             std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("history");
-  if (entry == nullptr) return std::nullopt;
-  ConfigSection section("history", "history", &entry->value, {1, 1}, problems);
-  HistorySettings out;
-  section.read_into(out);
+  if (!document.find("history")) return std::nullopt;
+  ConfigSection section("history", document, problems);
+  auto out = section.read<HistorySettings>();
   if (section.given("directory") && out.directory.empty())
     section.problem("directory", "must not be empty");
   if (section.given("summary_s"))
@@ -67,11 +61,9 @@ std::optional<HistorySettings> read_history(const TomlValue& document,
 
 std::optional<EventReportSettings> read_event_report(const TomlValue& document,
                                                      std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("event_report");
-  if (entry == nullptr) return std::nullopt;
-  ConfigSection section("event_report", "event_report", &entry->value, {1, 1}, problems);
-  EventReportSettings out;
-  section.read_into(out);
+  if (!document.find("event_report")) return std::nullopt;
+  ConfigSection section("event_report", document, problems);
+  auto out = section.read<EventReportSettings>();
   if (section.given("directory") && out.directory.empty())
     section.problem("directory", "must not be empty");
   if (out.red_drift_ratio < out.yellow_drift_ratio)
@@ -83,11 +75,9 @@ std::optional<EventReportSettings> read_event_report(const TomlValue& document,
 
 std::optional<ActionSettings> read_actions(const TomlValue& document,
                                            std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("actions");
-  if (entry == nullptr) return std::nullopt;
-  ConfigSection section("actions", "actions", &entry->value, {1, 1}, problems);
-  ActionSettings out;
-  section.read_into(out);
+  if (!document.find("actions")) return std::nullopt;
+  ConfigSection section("actions", document, problems);
+  auto out = section.read<ActionSettings>();
   if (!out.command.empty() && out.command.front().empty())
     section.problem("command", "must begin with the name of a program");
   if (section.given("webhook"))
@@ -103,11 +93,9 @@ std::optional<ActionSettings> read_actions(const TomlValue& document,
 
 std::optional<WatchSettings> read_watch(const TomlValue& document,
                                         std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("watch");
-  if (entry == nullptr) return std::nullopt;
-  ConfigSection section("watch", "watch", &entry->value, {1, 1}, problems);
-  WatchSettings out;
-  section.read_into(out);
+  if (!document.find("watch")) return std::nullopt;
+  ConfigSection section("watch", document, problems);
+  auto out = section.read<WatchSettings>();
   out.options.temperature = !out.temperature_channel.empty();
   return out;
 }

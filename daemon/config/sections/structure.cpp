@@ -69,12 +69,7 @@ DesignReading read_design(const TomlValue* design, const estimator::Structure& s
     for (const double value : of_floors)
       out.bending_nmprad.shares[along].push_back(value / of_floors[0]);
   }
-  const bool complete = find_problems(s).empty() && section.good("kx_npm") &&
-                        section.good("ky_npm") && section.good("gk") &&
-                        section.good("damping_ratio") && section.good("cx_nspm") &&
-                        section.good("cy_nspm") && section.good("gc") &&
-                        section.good("krx_nmprad") && section.good("kry_nmprad");
-  if (!complete) return {};
+  if (!find_problems(s).empty() || !section.good()) return {};
 
   const estimator::ParameterTable table(s);
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(table.size());
@@ -128,9 +123,7 @@ std::string problem_of_name(const std::string& name) {
 }
 
 StructureReading read_structure(const TomlValue& document, std::vector<TextProblem>& problems) {
-  const TomlEntry* entry = document.find("structure");
-  ConfigSection section("structure", "structure", entry ? &entry->value : nullptr, {1, 1},
-                        problems);
+  ConfigSection section("structure", document, problems);
   check_names(section, "frames_x");
   check_names(section, "frames_y");
   StructureReading out;
@@ -163,8 +156,7 @@ StructureReading read_structure(const TomlValue& document, std::vector<TextProbl
   out.mass_tolerance = section.number("mass_tolerance_ratio");
   out.profile_tolerance = section.number("profile_tolerance_ratio");
   if (section.given("azimuth_y_deg")) out.azimuth_y_deg = section.number("azimuth_y_deg");
-  const TomlEntry* design = entry ? entry->value.find("design") : nullptr;
-  out.design = read_design(design ? &design->value : nullptr, s, shape_known, problems);
+  out.design = read_design(section.value("design"), s, shape_known, problems);
   return out;
 }
 

@@ -19,8 +19,6 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
-#include "drivers/files/descriptor.h"
-
 namespace framewatch::drivers {
 namespace {
 

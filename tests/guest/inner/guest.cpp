@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -14,7 +15,7 @@
 
 #include "daemon/tools/simulation/scenario.h"
 #include "daemon/tools/simulation/simulation.h"
-#include "drivers/can/can_encoder.h"
+#include "drivers/can/can_map.h"
 #include "drivers/lcm/accel_codec.h"
 
 namespace framewatch::test {
@@ -56,13 +57,29 @@ Process::~Process() {
   if (!ended_) ::waitpid(pid_, nullptr, 0);
 }
 
+namespace {
+
+/// Returns a value as CanIntake decodes it after CanEncoder encoded it.
+double quantized(const drivers::CanMap& map, int axis, double value) {
+  for (const drivers::CanNodeMap& node : map.nodes)
+    for (const drivers::CanMessageMap& m : node.messages)
+      for (const drivers::CanReading& r : m.readings) {
+        if (r.axis != axis) continue;
+        std::array<std::uint8_t, 64> data{};
+        put_physical(r.field, value, data);
+        return physical(r.field, data);
+      }
+  return value;
+}
+
+}  // namespace
+
 std::vector<estimator::WindowEstimate> estimates_over_lcm(const std::string& path, double seconds) {
   std::vector<daemon::ConfigProblem> problems;
   auto scenario = daemon::load_scenario(path, problems);
   EXPECT_TRUE(scenario);
   scenario->duration_s = seconds;
   const drivers::CanMap map = scenario->config.can;
-  const drivers::CanEncoder encoder(map);
   daemon::Config config = scenario->config;
   config.can = {};
   std::vector<std::string> names;
@@ -83,7 +100,7 @@ std::vector<estimator::WindowEstimate> estimates_over_lcm(const std::string& pat
   for (std::int64_t k = 0; k < daemon::instants(*scenario); ++k) {
     std::vector<double> values = simulation.next();
     for (std::size_t a = 0; a < values.size(); ++a)
-      values[a] = encoder.quantized(static_cast<int>(a), values[a]);
+      values[a] = quantized(map, static_cast<int>(a), values[a]);
     for (const drivers::Message& m : messages.samples(10'000 * k, values))
       estimation.message(m.channel, m.bytes.data(), m.bytes.size());
   }

@@ -21,7 +21,7 @@ TEST(ConfigOptions, EveryRowIsComplete) {
     EXPECT_TRUE(keys.emplace(o.section, o.key).second) << "twice in the table";
     EXPECT_TRUE(o.meaning.ends_with(".")) << "meaning is a sentence";
     EXPECT_FALSE(o.required && !o.default_value.empty());
-    EXPECT_LT(o.min, o.max);
+    EXPECT_LT(o.range.min, o.range.max);
     EXPECT_EQ(o.type == OptionType::choice, !o.choices.empty());
   }
 }
@@ -36,7 +36,7 @@ TEST(ConfigOptions, DefaultsKeepTheirOwnRules) {
         char* end = nullptr;
         const double value = std::strtod(text.c_str(), &end);
         EXPECT_EQ(*end, '\0');
-        EXPECT_TRUE(value >= o.min && value <= o.max && (value > o.min || !o.above_min));
+        EXPECT_TRUE(value >= o.range.min && value <= o.range.max && (value > o.range.min || !o.range.above_min));
       }
     }
     if (o.type == OptionType::choice) {
