@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/estimation/estimation_events.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -2,8 +2,6 @@
 #include "daemon/monitor/history/history_files.h"
 
 #include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string_view>

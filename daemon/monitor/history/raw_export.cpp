@@ -11,7 +11,6 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/miniseed_file.h"
 #include "daemon/base/utc_time.h"
-#include "daemon/monitor/history/history_files.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/records/record_csv_writer.h"

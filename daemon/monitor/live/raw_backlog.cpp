@@ -2,8 +2,6 @@
 #include "daemon/monitor/live/raw_backlog.h"
 
 #include <algorithm>
-#include <optional>
-#include <utility>
 
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/history/history_files.h"

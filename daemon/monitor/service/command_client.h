@@ -49,9 +49,9 @@ std::string command_path(const std::string& directory, const Config& config,
 
 /// The outcome of a command.
 struct CommandAnswer {
-  bool answered = false;            ///< a daemon answered, perhaps with a refusal
-  std::string problem;              ///< why the daemon did not answer or refused; empty on success
-  std::vector<std::uint8_t> bytes;  ///< the message that answers the command
+  bool answered = false;  ///< a daemon answered, perhaps with a refusal
+  std::string problem;    ///< why the daemon did not answer or refused; empty on success
+  std::vector<std::uint8_t> bytes = {};  ///< the message that answers the command
 };
 
 /// Sends a command to the daemon of this configuration (`service`: "run" or "record") and waits at

@@ -12,7 +12,6 @@
 #include <chrono>
 #include <cstring>
 #include <iterator>
-#include <optional>
 #include <system_error>
 #include <utility>
 

@@ -11,7 +11,6 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "drivers/lcm/message_check.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
