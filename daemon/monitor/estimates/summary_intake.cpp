@@ -19,11 +19,6 @@ constexpr std::int64_t kStatusIsEarly_us = 2'000'000;  // a window comes after i
 constexpr double kBoxesPerWindow = 10;
 constexpr std::size_t kMaxTaken = 4096;
 
-std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us) {
-  const std::int64_t rest = time_us % step_us;
-  return time_us - (rest < 0 ? rest + step_us : rest);
-}
-
 using Counts = std::vector<std::int64_t>;
 
 std::array<const Counts*, ChannelData::kCounts> counts_of(const status_t& s) {
@@ -31,6 +26,11 @@ std::array<const Counts*, ChannelData::kCounts> counts_of(const status_t& s) {
 }
 
 }  // namespace
+
+std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us) {
+  const std::int64_t rest = time_us % step_us;
+  return time_us - (rest < 0 ? rest + step_us : rest);
+}
 
 std::int64_t PeriodCollector::slot(std::int64_t time_us) const {
   return floor_to(time_us, period_us_);

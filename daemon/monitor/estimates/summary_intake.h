@@ -19,6 +19,9 @@
 
 namespace framewatch::daemon {
 
+/// Returns the largest multiple of `step_us` that is not larger than `time_us`.
+std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us);
+
 /// One parameter in the windows that ended in a period or in a part of it.
 struct ParameterData {
   std::int64_t observable = 0;

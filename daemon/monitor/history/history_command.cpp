@@ -59,6 +59,8 @@ constexpr Column kColumns[] = {
     {"outliers", [](const SummaryRow& r) { return static_cast<double>(r.outliers); }},
 };
 
+/// Writes summaries of one period as .csv or .csv.gz, one row per parameter and period
+/// (docs/history.md). Returns an empty string, or the problem; then no file remains.
 std::string write_csv(const std::string& path, std::int64_t period_s,
                       const std::vector<NamedSummaries>& summaries) {
   drivers::TextOutput out;
@@ -79,6 +81,7 @@ std::string write_csv(const std::string& path, std::int64_t period_s,
   return good && out.close() ? "" : fmt::format("{}: {}", path, out.error());
 }
 
+/// Does so as .mat, periods x parameters.
 std::string write_mat(const std::string& path, std::int64_t period_s,
                       const std::vector<NamedSummaries>& summaries) {
   std::map<std::int64_t, std::size_t> row_of;
@@ -113,17 +116,10 @@ std::string write_mat(const std::string& path, std::int64_t period_s,
   return problem.empty() ? "" : fmt::format("{}: {}", path, problem);
 }
 
-/// Writes summaries of one period to `path`: .csv or .csv.gz with one row per parameter and period,
-/// or .mat, periods x parameters (docs/history.md). Returns an empty string, or the problem; then
-/// no file remains.
-std::string write_summaries(const std::string& path, std::int64_t period_s,
-                            const std::vector<NamedSummaries>& summaries) {
-  return path.ends_with(".mat") ? write_mat(path, period_s, summaries)
-                                : write_csv(path, period_s, summaries);
-}
-
 constexpr std::int64_t kProgressSamples = 1 << 14;
 
+/// Writes the requested raw samples to the file HistoryArguments::raw and prints notes about it.
+/// After a problem no file remains.
 class RawJob {
  public:
   RawJob(const HistoryArguments& arguments, const HistoryRequest& request,
@@ -140,10 +136,6 @@ class RawJob {
     std::int64_t samples = 0;
     std::vector<std::string> notes;
     std::string why;
-    const auto fails = [&] {
-      problem(why);
-      return;
-    };
     if (!read_raw_history(logs, request_.from_us, request_.to_us,
                           {[&](const auto& now, double rate) {
                              for (const std::string& name : now)
@@ -156,7 +148,7 @@ class RawJob {
                              if (resolution_mps2 == 0) resolution_mps2 = c.resolution_mps2;
                            }},
                           notes, why))
-      return fails();
+      return problem(why);
     check_patterns("--channel", a_.channels, names, problems_);
     if (samples == 0) problem("there are no raw samples in that time");
     if (!problems_.empty()) return;
@@ -166,7 +158,7 @@ class RawJob {
     std::erase_if(names, [&](const std::string& name) { return !is_chosen(a_.channels, name); });
     const auto out =
         raw_export(a_.raw, channels, rate_hz, resolution_mps2, {a_.network, a_.station}, why);
-    if (!out) return fails();
+    if (!out) return problem(why);
     expected_ = samples;
     progress_->part_begins();
     write_raw(logs, names, *out);
@@ -206,17 +198,12 @@ class RawJob {
           if (!good || !place[c.channel]) return;
           ++samples;
           beyond += c.count == drivers::kMaxCount || c.count == -drivers::kMaxCount;
-          const double accel = c.count == drivers::kNoCount
-                                   ? std::numeric_limits<double>::quiet_NaN()
-                                   : c.count * c.resolution_mps2;
-          good = out.put(*place[c.channel], c.time_us, accel);
+          good = out.put(*place[c.channel], c.time_us, c.accel_mps2());
         },
         [&](const drivers::LogEvent& event) { good = good && out.message(event); }};
     const bool read = read_raw_history(logs, request_.from_us, request_.to_us, visitor, notes, why);
-    if (!read || !good || !out.close()) {
-      problem(read ? fmt::format("{}: {}", a_.raw, out.error()) : why);
-      return;
-    }
+    if (!read || !good || !out.close())
+      return problem(read ? fmt::format("{}: {}", a_.raw, out.error()) : why);
     progress_.reset();
     std::FILE* const where = a_.raw == drivers::kStandardOutput ? stderr : stdout;
     fmt::print(where, "{}: {} samples of {} channels\n", a_.raw, samples, names.size());
@@ -231,13 +218,6 @@ class RawJob {
   std::int64_t expected_ = 0;  ///< total of all channels
   std::optional<ProgressLine> progress_{std::in_place, "history", false};
 };
-
-/// Writes the requested raw samples to the file HistoryArguments::raw and prints notes about it.
-/// After a problem no file remains.
-void export_raw_history(const HistoryArguments& arguments, const HistoryRequest& request,
-                        std::vector<std::string>& problems) {
-  RawJob(arguments, request, problems).run();
-}
 
 constexpr std::int64_t kMaxEvents = 1'000'000;
 
@@ -268,7 +248,8 @@ void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQ
   if (!a.out.empty()) {
     ProgressLine progress("history", false);
     progress("writing " + a.out, 0);
-    if (const std::string why = write_summaries(a.out, r.period_s, found); !why.empty())
+    const auto write = a.out.ends_with(".mat") ? &write_mat : &write_csv;
+    if (const std::string why = write(a.out, r.period_s, found); !why.empty())
       problems.push_back(why);
     return;
   }
@@ -304,7 +285,7 @@ int history(const HistoryArguments& a) {
     fmt::print("{}", a.json ? history_json(request->directory, summaries)
                             : printable_lines(history_overview(request->directory, summaries)));
   if (a.events) print_events(*request, summaries);
-  if (!a.raw.empty()) export_raw_history(a, *request, problems);
+  if (!a.raw.empty()) RawJob(a, *request, problems).run();
   const bool wants_summaries = !a.out.empty() || (asks && !a.events && a.raw.empty());
   if (wants_summaries && problems.empty()) give_summaries(a, *request, summaries, problems);
   if (const std::string why = summaries.problem(); !why.empty())

@@ -52,10 +52,12 @@ class RequestReader {
     find_directory();
     check_names();
     if (r_.directory.empty()) return std::move(r_);
-    if (const std::string why = summaries_.open(r_.directory); !why.empty())
+    if (const std::string why = summaries_.open(r_.directory); !why.empty()) {
       problem(fmt::format("{}: {}", summary_file(r_.directory), why));
-    else
-      read_request();
+    } else {
+      read_span();
+      choose_parameters();
+    }
     if (const std::string why = summaries_.problem(); problems_.empty() && !why.empty())
       problem(fmt::format("{}: {}", summary_file(r_.directory), why));
     return std::move(r_);
@@ -95,11 +97,6 @@ class RequestReader {
     };
     code("--network", a_.network, 2);
     code("--station", a_.station, 5);
-  }
-
-  void read_request() {
-    read_span();
-    choose_parameters();
   }
 
   void read_span() {

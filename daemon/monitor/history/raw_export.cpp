@@ -101,17 +101,15 @@ class LogExport : public RawExport {
 /// Writes a record, whose time zero is its first sample.
 class CsvExport : public RawExport {
  public:
-  explicit CsvExport(std::size_t channels) : channels_(channels) {}
-  bool open(const std::string& path, const std::vector<RawChannel>& channels) {
-    return csv_.open(path, names_of(channels));
-  }
+  explicit CsvExport(const std::vector<RawChannel>& channels) : names_(names_of(channels)) {}
+  bool open(const std::string& path) { return csv_.open(path, names_); }
   bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) override {
     if (!zero_us_) zero_us_ = time_us;
     if (time_us <= written_us_) {
       ++out_of_order_;
       return true;
     }
-    auto& row = rows_.try_emplace(time_us, channels_, estimator::kNaN).first->second;
+    auto& row = rows_.try_emplace(time_us, names_.size(), estimator::kNaN).first->second;
     row[channel] = accel_mps2;
     // Nodes are never this far behind each other.
     while (rows_.size() > 1 && rows_.begin()->first < time_us - kSecond_us)
@@ -142,7 +140,7 @@ class CsvExport : public RawExport {
     return good;
   }
 
-  std::size_t channels_;
+  std::vector<std::string> names_;
   drivers::RecordCsvWriter csv_;
   std::map<std::int64_t, std::vector<double>> rows_;
   std::optional<std::int64_t> zero_us_;
@@ -191,24 +189,15 @@ std::unique_ptr<RawExport> raw_export(const std::string& path,
                                       const std::vector<RawChannel>& channels, double rate_hz,
                                       double resolution_mps2, const SeedNames& names,
                                       std::string& error) {
-  const auto opened = [&](auto out, bool good) -> std::unique_ptr<RawExport> {
-    if (good) return out;
+  const auto opened = [&](auto out) -> std::unique_ptr<RawExport> {
+    if (out->open(path)) return out;
     error = fmt::format("{}: {}", path, out->error());
     return nullptr;
   };
-  if (path.ends_with(".lcmlog")) {
-    auto out = std::make_unique<LogExport>(channels, rate_hz);
-    const bool good = out->open(path);
-    return opened(std::move(out), good);
-  }
-  if (path.ends_with(".mseed")) {
-    auto out = std::make_unique<SeedExport>(channels, rate_hz, resolution_mps2, names);
-    const bool good = out->open(path);
-    return opened(std::move(out), good);
-  }
-  auto out = std::make_unique<CsvExport>(channels.size());
-  const bool good = out->open(path, channels);
-  return opened(std::move(out), good);
+  if (path.ends_with(".lcmlog")) return opened(std::make_unique<LogExport>(channels, rate_hz));
+  if (path.ends_with(".mseed"))
+    return opened(std::make_unique<SeedExport>(channels, rate_hz, resolution_mps2, names));
+  return opened(std::make_unique<CsvExport>(channels));
 }
 
 std::string problem_of_raw_name(const std::string& path) {

@@ -57,6 +57,15 @@ std::vector<RawLog> raw_logs_between(const std::string& directory, std::int64_t 
   return out;
 }
 
+std::vector<int> axes_of(const std::vector<std::string>& channels,
+                         const std::vector<estimator::SensorAxis>& axes) {
+  std::vector<int> out(channels.size(), -1);
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      if (axes[a].name == channels[i]) out[i] = static_cast<int>(a);
+  return out;
+}
+
 bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std::int64_t to_us,
                       const RawVisitor& visitor, std::vector<std::string>& notes,
                       std::string& problem) {

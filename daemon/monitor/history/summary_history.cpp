@@ -71,10 +71,15 @@ void SummaryHistory::work() {
       queued_ = 0;
     }
     guarded(messages.size(), [&] {
-      for (const Message& message : messages) take(message);
+      for (const Message& message : messages) {
+        const SummaryIntake::Taken taken = intake_.take(message.kind, message.bytes);
+        if (taken.period) next_commit_ = std::min(next_commit_, Clock::now());
+        if (taken.news) next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
+      }
       const bool due = Clock::now() >= next_commit_;
       // Ends the period even if the sensors fall silent in the middle of it.
-      if (last || (due && waiting().empty())) end_period();
+      if ((last || (due && waiting().empty())) && intake_.end_period())
+        next_commit_ = std::min(next_commit_, Clock::now());
       if (last || due) commit();
     });
   }
@@ -89,16 +94,6 @@ void SummaryHistory::guarded(std::size_t messages, const std::function<void()>& 
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.dropped += static_cast<std::int64_t>(messages);
   counters_.trouble = thrown;
-}
-
-void SummaryHistory::take(const Message& message) {
-  const SummaryIntake::Taken taken = intake_.take(message.kind, message.bytes);
-  if (taken.period) next_commit_ = std::min(next_commit_, Clock::now());
-  if (taken.news) next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
-}
-
-void SummaryHistory::end_period() {
-  if (intake_.end_period()) next_commit_ = std::min(next_commit_, Clock::now());
 }
 
 std::string SummaryHistory::store_waiting() {
@@ -173,14 +168,11 @@ void SummaryHistory::bound() {
     dropped += waiting().periods.front().windows;
     waiting().periods.erase(waiting().periods.begin());
   }
-  while (waiting().events.size() > kMaxEvents) {
-    ++dropped;
-    waiting().events.erase(waiting().events.begin());
-  }
-  while (waiting().acknowledged.size() > kMaxEvents) {
-    ++dropped;
-    waiting().acknowledged.erase(waiting().acknowledged.begin());
-  }
+  const auto bound_news = [&dropped](auto& news) {
+    for (; news.size() > kMaxEvents; news.erase(news.begin())) ++dropped;
+  };
+  bound_news(waiting().events);
+  bound_news(waiting().acknowledged);
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.dropped += dropped;
 }

@@ -56,8 +56,6 @@ class SummaryHistory {
 
   void work();
   void guarded(std::size_t messages, const std::function<void()>& round);
-  void take(const Message& message);
-  void end_period();
   void commit();
   std::string store_waiting();
   bool begin_anew(const std::string& reason);

@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
+#include <framewatch/service_t.hpp>
+
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
-#include "daemon/monitor/estimation/baseline_keeper.h"
 #include "daemon/monitor/estimation/gap_files.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/live/intake_monitor.h"
 #include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/live/reloader.h"
-#include "daemon/monitor/live/service_report.h"
 #include "daemon/monitor/live/state_keeper.h"
 #include "daemon/monitor/service/progress_watch.h"
 #include "daemon/monitor/service/service_manager.h"
@@ -39,16 +40,23 @@ class Housekeeping {
   void write_state(LiveEstimation& live) { state_.keep(live.config(), live.estimation()); }
 
  private:
+  void keep_baseline(const LiveEstimation& live);
+  service_t service_report(const LiveEstimation& live, const std::vector<RaisedEvents*>& raised,
+                           std::int64_t now_us) const;
+
   StateKeeper state_;
   IntakeWarnings intake_warnings_;
   CanWarnings can_warnings_;
   CanMonitor can_monitor_;
-  BaselineKeeper baseline_;
+  estimator::Baseline written_baseline_;  ///< in the configured file
   GapKeeper gap_;
   Reloader reloader_;
-  ServiceReport report_;
+  OnceASecond report_;
   ProgressWatch progress_;
   const Config& config_;  ///< the first one, for names that no reload changes
+  const StartCount starts_;
+  const bool resumed_;
+  const std::int64_t started_us_;
 };
 
 }  // namespace framewatch::daemon

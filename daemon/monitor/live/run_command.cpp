@@ -44,12 +44,37 @@ namespace {
 class LiveEvents {
  public:
   /// All arguments must outlive this.
-  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history);
+  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history)
+      : config_(config),
+        live_(live),
+        history_(history),
+        actions_(config, lcm),
+        desk_(config, lcm,
+              [this](const event_t& event, const Acknowledgement& by) { acknowledged(event, by); }),
+        commands_(config, "run", [this](const CommandPacket& command, const std::string& user) {
+          return obey(command, user);
+        }) {
+    actions_.raised_before(live_.estimation().raised());
+  }
   LiveEvents(const LiveEvents&) = delete;
   LiveEvents& operator=(const LiveEvents&) = delete;
 
   /// Handles new events and requests. Call it several times a second.
-  void poll();
+  void poll() {
+    for (const event_t& event : live_.take_events()) {
+      log(event.severity >= severity::warning ? LogLevel::warning : LogLevel::notice,
+          fmt::format("{} {}: {}", event.kind, event.place, event.message));
+      actions_.event(event, live_.estimation().raised().acknowledgement(event.id) != nullptr);
+    }
+    for (const std::vector<std::uint8_t>& request : live_.take_requests())
+      desk_.heard(request, host_clock_us());
+    for (const event_t& event : history_.update(host_clock_us()))
+      actions_.event(event, history_.raised().acknowledgement(event.id) != nullptr);
+    commands_.poll(steady_clock_us());
+    desk_.update(raised(), host_clock_us());
+    actions_.update(host_clock_us());
+  }
+
   /// Continues with another configuration, of which [actions] may differ.
   void reconfigure(const Config& config) { actions_.reconfigure(config); }
 
@@ -57,8 +82,20 @@ class LiveEvents {
   AcknowledgeDesk::Raised raised() { return {&live_.estimation().raised(), &history_.raised()}; }
 
  private:
-  void acknowledged(const event_t& event, const Acknowledgement& by);
-  CommandPacket obey(const CommandPacket& command, const std::string& user);
+  void acknowledged(const event_t& event, const Acknowledgement& by) {
+    actions_.acknowledged(event);
+    if (history_.history() != nullptr)
+      history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED",
+                                  drivers::encoded(acknowledged_message(event, by)));
+  }
+
+  CommandPacket obey(const CommandPacket& command, const std::string& user) {
+    if (command.channel != "ACKNOWLEDGE")
+      return refused("framewatch run takes no other command than acknowledge");
+    const auto answer = desk_.obey(command.bytes, user, raised(), host_clock_us());
+    if (!answer) return refused("cannot read the request: is it from another version?");
+    return {"ACKNOWLEDGED", drivers::encoded(*answer)};
+  }
 
   const Config& config_;
   LiveEstimation& live_;
@@ -67,50 +104,6 @@ class LiveEvents {
   AcknowledgeDesk desk_;
   CommandSocket commands_;
 };
-
-LiveEvents::LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live,
-                       HistoryReport& history)
-    : config_(config),
-      live_(live),
-      history_(history),
-      actions_(config, lcm),
-      desk_(config, lcm,
-            [this](const event_t& event, const Acknowledgement& by) { acknowledged(event, by); }),
-      commands_(config, "run", [this](const CommandPacket& command, const std::string& user) {
-        return obey(command, user);
-      }) {
-  actions_.raised_before(live_.estimation().raised());
-}
-
-void LiveEvents::acknowledged(const event_t& event, const Acknowledgement& by) {
-  actions_.acknowledged(event);
-  if (history_.history() != nullptr)
-    history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED",
-                                drivers::encoded(acknowledged_message(event, by)));
-}
-
-CommandPacket LiveEvents::obey(const CommandPacket& command, const std::string& user) {
-  if (command.channel != "ACKNOWLEDGE")
-    return refused("framewatch run takes no other command than acknowledge");
-  const auto answer = desk_.obey(command.bytes, user, raised(), host_clock_us());
-  if (!answer) return refused("cannot read the request: is it from another version?");
-  return {"ACKNOWLEDGED", drivers::encoded(*answer)};
-}
-
-void LiveEvents::poll() {
-  for (const event_t& event : live_.take_events()) {
-    log(event.severity >= severity::warning ? LogLevel::warning : LogLevel::notice,
-        fmt::format("{} {}: {}", event.kind, event.place, event.message));
-    actions_.event(event, live_.estimation().raised().acknowledgement(event.id) != nullptr);
-  }
-  for (const std::vector<std::uint8_t>& request : live_.take_requests())
-    desk_.heard(request, host_clock_us());
-  for (const event_t& event : history_.update(host_clock_us()))
-    actions_.event(event, history_.raised().acknowledgement(event.id) != nullptr);
-  commands_.poll(steady_clock_us());
-  desk_.update(raised(), host_clock_us());
-  actions_.update(host_clock_us());
-}
 
 constexpr int kPoll_ms = 100;
 

@@ -91,17 +91,12 @@ void read_samples(const Config& config, std::int64_t newest_us, StoredHistory& o
   const std::int64_t from_us = newest_us - static_cast<std::int64_t>(1e6 * most_s);
   std::vector<int> axis_of;  // by the log's channel; -1: not in this configuration
   const RawVisitor visitor{
-      [&](const std::vector<std::string>& names, double) {
-        axis_of.assign(names.size(), -1);
-        for (std::size_t i = 0; i < names.size(); ++i)
-          for (std::size_t a = 0; a < axes.size(); ++a)
-            if (axes[a].name == names[i]) axis_of[i] = static_cast<int>(a);
-      },
+      [&](const std::vector<std::string>& names, double) { axis_of = axes_of(names, axes); },
       [&](const RawCount& c) {
         const bool full = out.samples.size() >= 2 * StoredHistory::kMaxSamples;
         if (full || c.count == drivers::kNoCount || axis_of[c.channel] < 0) return;
-        out.samples.push_back({estimator::from_microseconds(c.time_us), axis_of[c.channel],
-                               c.count * c.resolution_mps2});
+        out.samples.push_back(
+            {estimator::from_microseconds(c.time_us), axis_of[c.channel], c.accel_mps2()});
       }};
   std::string problem;
   if (!read_raw_history(raw_logs_between(config.history->directory, from_us, kEver_us), from_us,
