@@ -35,24 +35,10 @@ bool has_value(const window_estimate_t& e, std::size_t i) {
 }  // namespace
 
 const char* reason_word(int reason) {
-  switch (reason) {
-    case 0:
-      return "ok";
-    case 1:
-      return "warming up";
-    case 2:
-      return "quiet";
-    case 3:
-      return "floor too stiff";
-    case 4:
-      return "plan symmetric";
-    case 5:
-      return "channel lost";
-    case kTooUncertain:
-      return "too uncertain";
-    default:
-      return "?";
-  }
+  constexpr std::array<const char*, kReasons> kWords = {
+      "ok",           "warming up",   "quiet", "floor too stiff", "plan symmetric",
+      "channel lost", "too uncertain"};
+  return reason >= 0 && reason < kReasons ? kWords[static_cast<std::size_t>(reason)] : "?";
 }
 
 EstimateErrors errors_against(const parameter_table_t& table, const window_estimate_t& e,

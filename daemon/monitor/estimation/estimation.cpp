@@ -10,6 +10,7 @@
 #include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/identify/groups/layout_prediction.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -290,29 +291,37 @@ void Estimation::publish_state() {
   }
   const estimator::PipelineCounters pipeline = pipeline_.counters();
   const drivers::IntakeCounters& intake = intake_.counters();
-  StatusCounts counts;
-  counts.windows = pipeline.windows;
-  counts.sample_sets = pipeline.sample_sets;
-  counts.gaps = pipeline.interruptions;
-  counts.rejected_messages = intake.foreign + intake.malformed + intake.duplicate +
+  status_t status{};
+  status.time_us = seconds_.newest_us();
+  status.windows = pipeline.windows;
+  status.sample_sets = pipeline.sample_sets;
+  status.gaps = pipeline.interruptions;
+  status.queue_high_water = live_.queue_high_water;
+  status.queue_dropped = live_.queue_dropped;
+  status.latency_s = live_.latency_s;
+  status.rejected_messages = intake.foreign + intake.malformed + intake.duplicate +
                              intake.other_sender + absurd_temperatures_;
   for (std::size_t n = 0; n < can_.map().nodes.size(); ++n) {
     const drivers::CanNodeCounters node = can_.node(n);
-    counts.rejected_messages +=
+    status.rejected_messages +=
         node.wrong_length + node.wrong_kind + node.unplaced + node.duplicates + node.late;
   }
   noise_density_ = pipeline_.noise_density();
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const estimator::AxisCounters& axis = axes[i];
     const drivers::HeardNode* node = intake_.node_of(i);
-    counts.axes.push_back({axis.received, node == nullptr ? can_.lost_of(i) : node->counter.lost,
-                           axis.late, axis.repaired,
-                           axis.rejected + (node == nullptr ? 0 : node->left_out()), axis.stuck,
-                           axis.clipped});
-    if (!noise_density_.empty()) counts.axes.back().noise_density = noise_density_[i];
+    status.received.push_back(axis.received);
+    status.lost.push_back(node == nullptr ? can_.lost_of(i) : node->counter.lost);
+    status.late.push_back(axis.late);
+    status.repaired.push_back(axis.repaired);
+    status.rejected.push_back(axis.rejected + (node == nullptr ? 0 : node->left_out()));
+    status.stuck.push_back(axis.stuck);
+    status.clipped.push_back(axis.clipped);
+    status.noise_mps2_per_rthz.push_back(noise_density_.empty() ? estimator::kNaN
+                                                                : noise_density_[i]);
   }
   publisher_.parameters(seconds_.newest_us(), pipeline_);
-  publisher_.status(seconds_.newest_us(), counts, live_);
+  publisher_.status(std::move(status));
   if (watch_) publisher_.watch(seconds_.newest_us(), *watch_);
 }
 

@@ -2,6 +2,7 @@
 #include "daemon/monitor/estimation/input_events.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -19,27 +20,9 @@ constexpr std::int64_t kFirstAbsurdId = std::int64_t{1} << 42;
 using Kind = drivers::CanNotice::Kind;
 
 constexpr std::int64_t kFirstId = std::int64_t{1} << 40;
-constexpr std::size_t kKinds = 7;
-
-const char* name_of(Kind kind) {
-  switch (kind) {
-    case Kind::bus_off:
-      return "bus_off";
-    case Kind::interface_gone:
-      return "interface_gone";
-    case Kind::emergency:
-      return "emergency";
-    case Kind::boot_up:
-      return "boot_up";
-    case Kind::sequence_leap:
-      return "sequence_leap";
-    case Kind::duplicates:
-      return "duplicates";
-    case Kind::losses:
-      return "losses";
-  }
-  return "";
-}
+constexpr std::array kCanKinds = {"bus_off",       "interface_gone", "emergency", "boot_up",
+                                  "sequence_leap", "duplicates",     "losses"};
+static_assert(kCanKinds.size() == static_cast<std::size_t>(Kind::losses) + 1);
 
 std::string message_of(Kind kind, const std::string& place, bool over, int code) {
   switch (kind) {
@@ -209,7 +192,7 @@ event_t AbsurdEvents::event_of(std::size_t axis, std::int64_t time_us) const {
   m.kind = "absurd_samples";
   m.place = axes_[axis].name;
   m.value = static_cast<double>(count);
-  m.std_error = std::numeric_limits<double>::quiet_NaN();
+  m.std_error = estimator::kNaN;
   m.unit = "samples";
   m.message = channel.raised ? fmt::format(
                                    "{} sends values that no sensor can measure: {} so far, all "
@@ -221,10 +204,10 @@ event_t AbsurdEvents::event_of(std::size_t axis, std::int64_t time_us) const {
 }
 
 CanEvents::CanEvents(const drivers::CanMap& map)
-    : map_(map), begun_(kKinds * std::max(map.buses.size(), map.nodes.size())) {}
+    : map_(map), begun_(kCanKinds.size() * std::max(map.buses.size(), map.nodes.size())) {}
 
 std::optional<event_t> CanEvents::of(const drivers::CanNotice& n) {
-  const std::size_t width = begun_.size() / kKinds;
+  const std::size_t width = begun_.size() / kCanKinds.size();
   const auto index = static_cast<std::size_t>(n.index);
   const std::size_t at = static_cast<std::size_t>(n.kind) * width + index;
   const bool of_bus = n.kind == Kind::bus_off || n.kind == Kind::interface_gone;
@@ -246,7 +229,7 @@ std::optional<event_t> CanEvents::of(const drivers::CanNotice& n) {
   m.severity = momentary || (of_numbers && n.over) ? severity::information
                : of_numbers || n.over              ? severity::warning
                                                    : severity::alarm;
-  m.kind = name_of(n.kind);
+  m.kind = kCanKinds[static_cast<std::size_t>(n.kind)];
   m.place = place;
   m.value = n.code;
   m.message = message_of(n.kind, place, n.over, n.code);
@@ -309,7 +292,7 @@ event_t ChannelEvents::event_of(std::size_t axis, const Trouble& trouble, bool s
   m.kind = silent ? "channel_silent" : "channel_stuck";
   m.place = axes_[axis].name;
   m.value = 1e-6 * static_cast<double>(time_us - trouble.since_us);
-  m.std_error = std::numeric_limits<double>::quiet_NaN();
+  m.std_error = estimator::kNaN;
   m.unit = "s";
   m.message = silent ? silent_message(m.place, trouble.raised, channels_[axis].received > 0)
                      : stuck_message(m.place, trouble.raised);

@@ -29,10 +29,6 @@ double seconds_between(std::int64_t from_us, std::int64_t to_us) {
   return 1e-6 * static_cast<double>(to_us - from_us);
 }
 
-std::int64_t sum(const std::vector<std::int64_t>& values) {
-  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
-}
-
 void of_process(const service_t& s, const Config& config, std::int64_t now_us,
                 std::vector<std::string>& out) {
   const double age_s = seconds_between(s.started_us, now_us);
@@ -97,7 +93,7 @@ void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string
 void of_punctuality(const Heard& heard, std::vector<std::string>& out) {
   if (!heard.first_service) return;
   const auto estimates =
-      static_cast<double>(sum(heard.service->latencies) - sum(heard.first_service->latencies));
+      static_cast<double>(total(heard.service->latencies) - total(heard.first_service->latencies));
   const auto late =
       static_cast<double>(heard.service->deadline_missed - heard.first_service->deadline_missed);
   if (late > 0 && late > kLate_ratio * estimates)
@@ -183,6 +179,10 @@ void Heard::message(const std::string& channel, const void* data, std::size_t si
 bool Heard::enough() const {
   if (!first_service) return false;
   return first_status.has_value() || silent_s(*service, service->time_us) > kSilent_s;
+}
+
+std::int64_t total(const std::vector<std::int64_t>& values) {
+  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
 }
 
 double silent_s(const service_t& service, std::int64_t now_us) {

@@ -53,6 +53,9 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
 /// Returns the time since the newest sample, or since the start if no sample has come.
 double silent_s(const service_t& service, std::int64_t now_us);
 
+/// Returns the sum of the counters.
+std::int64_t total(const std::vector<std::int64_t>& counters);
+
 /// Returns a duration such as "3 d 4 h", "5 min 10 s" or "2 s".
 std::string span_text(double seconds);
 

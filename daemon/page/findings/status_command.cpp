@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,10 +29,6 @@
 namespace framewatch::daemon {
 namespace {
 
-std::int64_t sum_of(const std::vector<std::int64_t>& values) {
-  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
-}
-
 /// Returns the output of `framewatch status --json`. odd: the problems found. Requires
 /// heard.service. now_us: host clock.
 std::string status_json(const Heard& h, const Config& config, const std::vector<std::string>& odd,
@@ -58,8 +53,8 @@ std::string status_json(const Heard& h, const Config& config, const std::vector<
   if (h.status) {
     out["windows"] = h.status->windows;
     out["latency_s"] = h.status->latency_s;
-    out["lost"] = sum_of(h.status->lost);
-    out["rejected"] = sum_of(h.status->rejected);
+    out["lost"] = total(h.status->lost);
+    out["rejected"] = total(h.status->rejected);
   }
   if (h.reception)
     out["dropped"] = {{"elsewhere", h.reception->datagrams_elsewhere},
@@ -123,10 +118,6 @@ std::optional<double> rate(const Heard& h, std::int64_t first, std::int64_t last
       h.first_status ? 1e-6 * static_cast<double>(h.status->time_us - h.first_status->time_us) : 0;
   if (!(seconds > 0)) return std::nullopt;
   return static_cast<double>(last - first) / seconds;
-}
-
-std::int64_t total(const std::vector<std::int64_t>& values) {
-  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
 }
 
 void line(const char* what, const std::string& text) {
