@@ -93,13 +93,10 @@ class Notifier {
 
   /// `patience_s`: how long attempts to deliver one event are repeated; 0: a single attempt.
   void configure(const ActionSettings& settings, double patience_s);
-  /// Tells that an earlier run has delivered the event: only its end is delivered.
+  // As in ActionQueue.
   void delivered_before(const event_t& event);
-  /// Queues an event. Of an `acknowledged` event only the end is delivered.
   void event(const event_t& event, bool acknowledged);
-  /// Tells that the event was acknowledged: only its end is still delivered.
   void acknowledged(const event_t& event);
-  /// Returns the counters so far.
   Counters counters() const;
 
  private:

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "daemon/monitor/estimates/estimate_table.h"
+
 namespace framewatch::daemon {
 namespace {
 
@@ -84,11 +86,7 @@ void EstimateDiff::compare(const std::string& channel, const window_estimate_t& 
   if (a.held_end_us != b.held_end_us || a.held_index != b.held_index)
     note("window", "held_end_us, held_index", static_cast<double>(a.held),
          static_cast<double>(b.held));
-  columns("q1", a.q1, b.q1);
-  columns("median", a.median, b.median);
-  columns("q3", a.q3, b.q3);
-  columns("whisker_low", a.whisker_low, b.whisker_low);
-  columns("whisker_high", a.whisker_high, b.whisker_high);
+  for (const BoxColumn& box : kBoxColumns) columns(box.name, a.*box.values, b.*box.values);
   columns("outliers", a.outliers, b.outliers);
   columns("boxplot_count", a.boxplot_count, b.boxplot_count);
   ++compared_;

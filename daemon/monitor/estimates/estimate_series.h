@@ -34,7 +34,6 @@ class EstimateSeries {
   const std::vector<std::int64_t>& end_us() const { return end_us_; }
   std::int64_t windows() const { return static_cast<std::int64_t>(end_us_.size()); }
 
-  /// The windows that end in [from_us, to_us].
   struct Range {
     std::size_t begin, end;
   };

@@ -157,29 +157,24 @@ void Estimation::take(estimator::Pipeline::Results&& results) {
       follow_shaking(*result.instant);
       listener_->on_instant(*result.instant);
     }
-    if (result.estimate != nullptr) main_window(*result.estimate);
+    if (result.estimate != nullptr) {
+      listener_->on_estimate(*result.estimate);
+      publisher_.estimate(*result.estimate);
+      ++windows_;
+      watch(*result.estimate);
+      if (gap_) gap_->learn(*result.estimate, pipeline_.theta0());
+      if (shaking_) shaking_->push(*result.estimate);
+    }
     if (result.other != nullptr) {
       publisher_.other(*result.other);
       watch(*result.other);
     }
     if (result.model != nullptr) publisher_.model(*result.model);
-    if (result.late != nullptr) late_window(*result.late);
+    if (result.late != nullptr) {  // the gap monitor learns only from the newest windows
+      publisher_.late(*result.late);
+      if (shaking_) shaking_->push(*result.late);
+    }
   }
-}
-
-void Estimation::main_window(const estimator::WindowEstimate& estimate) {
-  listener_->on_estimate(estimate);
-  publisher_.estimate(estimate);
-  ++windows_;
-  watch(estimate);
-  if (gap_) gap_->learn(estimate, pipeline_.theta0());
-  if (shaking_) shaking_->push(estimate);
-}
-
-/// The gap monitor does not get late windows: it learns from the newest ones.
-void Estimation::late_window(const estimator::WindowEstimate& estimate) {
-  publisher_.late(estimate);
-  if (shaking_) shaking_->push(estimate);
 }
 
 void Estimation::compare_gap(const estimator::SampleSet& instant) {
@@ -192,10 +187,6 @@ void Estimation::compare_gap(const estimator::SampleSet& instant) {
   if (news == nullptr) return;
   announce(gap_event(*news, config_));
   listener_->on_gap(*news);
-}
-
-void Estimation::adopt(const estimator::GapModel& model) {
-  if (gap_) gap_->adopt(model);
 }
 
 void Estimation::watch(const estimator::WindowEstimate& estimate) {

@@ -126,7 +126,9 @@ class Estimation {
   const RaisedEvents& raised() const { return raised_; }
   RaisedEvents& raised() { return raised_; }
   /// Makes the gap monitor simulate this model from now on. Does nothing without [gap].
-  void adopt(const estimator::GapModel& model);
+  void adopt(const estimator::GapModel& model) {
+    if (gap_) gap_->adopt(model);
+  }
   /// Returns the baseline of the change detection; nullptr while it is learned and without [watch].
   const estimator::Baseline* baseline() const { return watch_ ? watch_->baseline() : nullptr; }
 
@@ -162,8 +164,6 @@ class Estimation {
   void publish_state();
   drivers::IntakeResult temperature(const void* data, std::size_t size);
   void take(estimator::Pipeline::Results&& results);
-  void main_window(const estimator::WindowEstimate& estimate);
-  void late_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
   void follow_recovery(const estimator::WindowEstimate& estimate);
   /// Returns true if the change of this parameter began with the strong motion of its recovery law.

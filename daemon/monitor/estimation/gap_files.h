@@ -43,7 +43,6 @@ class GapSegments {
   GapSegments(const GapSegments&) = delete;
   GapSegments& operator=(const GapSegments&) = delete;
 
-  /// Keeps a sample.
   void sample(const estimator::AccelSample& sample);
   /// Tells that the gap with this id was raised: its segment is written when it is complete.
   void raised(std::int64_t gap_id);

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/config/channel_addresses.h"
+#include "daemon/monitor/estimates/estimate_table.h"
 #include "drivers/files/encoded.h"
 #include "estimator/numeric/nan.h"
 
@@ -85,7 +86,7 @@ void Publisher::fill_values(const estimator::WindowEstimate& e) {
   m.held_std_error.clear();
   m.held_end_us.clear();
   m.boxplot_windows = m.boxplots = 0;
-  for (auto* column : {&m.q1, &m.median, &m.q3, &m.whisker_low, &m.whisker_high}) column->clear();
+  for (const BoxColumn& column : kBoxColumns) (m.*column.values).clear();
   m.outliers.clear();
   m.boxplot_count.clear();
   for (std::size_t p = 0; p < e.reason.size() && e.window == 0 && !e.late; ++p) {
@@ -115,11 +116,7 @@ void Publisher::estimate(const estimator::WindowEstimate& e) {
   m.boxplots = with_boxplot ? static_cast<std::int32_t>(e.boxplot.size()) : 0;
   if (with_boxplot) {
     for (const estimator::BoxplotStatistics& box : e.boxplot) {
-      m.q1.push_back(box.q1);
-      m.median.push_back(box.median);
-      m.q3.push_back(box.q3);
-      m.whisker_low.push_back(box.whisker_low);
-      m.whisker_high.push_back(box.whisker_high);
+      for (const BoxColumn& column : kBoxColumns) (m.*column.values).push_back(box.*column.value);
       m.outliers.push_back(box.outliers);
       m.boxplot_count.push_back(box.count);
     }

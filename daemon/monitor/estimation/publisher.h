@@ -44,7 +44,6 @@ class Publisher {
   /// `config` must outlive this. Without a sink nothing is encoded.
   Publisher(const Config& config, MessageSink sink);
 
-  /// Publishes the parameter table.
   void parameters(std::int64_t time_us, const estimator::Pipeline& pipeline);
   /// Publishes an estimate of the main window, every LcmSettings::boxplot_every-th one with boxplot
   /// statistics.
@@ -54,13 +53,10 @@ class Publisher {
   /// Publishes a late estimate (WindowEstimate::late) on its window's channel plus _LATE, so that
   /// readers of the main channel get windows in order.
   void late(const estimator::WindowEstimate& estimate);
-  /// Publishes an event.
   void event(const event_t& event);
   /// Publishes the baselines with which changes are compared.
   void watch(std::int64_t time_us, const estimator::Watch& watch);
-  /// Publishes a window of the gap monitor.
   void gap(const estimator::GapWindow& window);
-  /// Publishes how well the model fits.
   void model(const estimator::ModelFit& fit);
   /// Publishes the counters of `status`, which are by axis. Adds the names of the axes, the
   /// configuration and the version.

@@ -11,7 +11,6 @@
 
 namespace framewatch::daemon {
 
-/// One channel of an export.
 struct RawChannel {
   std::string name;
   drivers::AxisAddress address;  ///< LCM address

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "daemon/base/clocks.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/raw_history_reader.h"
 #include "estimator/motion/acquisition.h"

@@ -84,9 +84,11 @@ class LiveEvents {
  private:
   void acknowledged(const event_t& event, const Acknowledgement& by) {
     actions_.acknowledged(event);
-    if (history_.history() != nullptr)
-      history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED",
-                                  drivers::encoded(acknowledged_message(event, by)));
+    if (history_.history() == nullptr) return;
+    acknowledged_t message{};
+    message.time_us = by.time_us;
+    add_acknowledged(message, event, by);
+    history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED", drivers::encoded(message));
   }
 
   CommandPacket obey(const CommandPacket& command, const std::string& user) {

@@ -39,7 +39,6 @@ class CommandSocket {
 
   /// Returns why the socket does not listen; empty if it does.
   const std::string& problem() const { return problem_; }
-  /// Returns the path of the socket.
   const std::string& path() const { return path_; }
   std::int64_t malformed() const { return malformed_; }  ///< malformed packets so far
 

@@ -29,11 +29,7 @@ window_estimate_t empty_estimate(std::size_t parameters, std::int64_t end_us) {
   e.residual_ratio = kNaN;
   e.boxplots = 1;
   e.reason.assign(parameters, kQuiet);
-  for (auto* list :
-       {&e.value, &e.std_error, &e.q1, &e.median, &e.q3, &e.whisker_low, &e.whisker_high})
-    list->assign(parameters, kNaN);
-  e.outliers.assign(parameters, 0);
-  e.boxplot_count.assign(parameters, 0);
+  clear_values(e, parameters);
   return e;
 }
 
