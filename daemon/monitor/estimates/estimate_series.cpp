@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "estimator/numeric/nan.h"
+
 namespace framewatch::daemon {
 
 EstimateSeries::EstimateSeries(const estimator::ParameterTable& table, bool with_errors,

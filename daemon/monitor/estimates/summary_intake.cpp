@@ -6,9 +6,6 @@
 #include <iterator>
 #include <utility>
 
-#include <framewatch/status_t.hpp>
-#include <framewatch/window_estimate_t.hpp>
-
 #include "daemon/base/clocks.h"
 #include "drivers/lcm/message_check.h"
 
@@ -132,23 +129,15 @@ void PeriodCollector::taken(std::int64_t start_us, std::int64_t last_us) {
 
 SummaryIntake::SummaryIntake(const std::string& prefix, std::int64_t shortest_s,
                              std::function<void()> before_other_names)
-    : estimate_(prefix + "ESTIMATE"),
-      late_(prefix + "ESTIMATE_LATE"),
-      table_(prefix + "PARAMETERS"),
-      status_(prefix + "STATUS"),
-      event_(prefix + "EVENT"),
-      acknowledged_(prefix + "ACKNOWLEDGED"),
+    : kinds_{{prefix + "ESTIMATE", Kind::estimate}, {prefix + "ESTIMATE_LATE", Kind::late},
+             {prefix + "PARAMETERS", Kind::table},  {prefix + "STATUS", Kind::status},
+             {prefix + "EVENT", Kind::event},       {prefix + "ACKNOWLEDGED", Kind::acknowledged}},
       before_other_names_(std::move(before_other_names)),
       collector_(kSecond_us * shortest_s) {}
 
 std::optional<SummaryIntake::Kind> SummaryIntake::kind_of(const std::string& channel) const {
-  return channel == estimate_       ? Kind::estimate
-         : channel == late_         ? Kind::late
-         : channel == table_        ? Kind::table
-         : channel == status_       ? Kind::status
-         : channel == event_        ? Kind::event
-         : channel == acknowledged_ ? Kind::acknowledged
-                                    : std::optional<Kind>();
+  const auto kind = kinds_.find(channel);
+  return kind == kinds_.end() ? std::nullopt : std::optional(kind->second);
 }
 
 SummaryIntake::Taken SummaryIntake::take(Kind kind, std::span<const std::uint8_t> bytes) {

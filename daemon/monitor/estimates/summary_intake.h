@@ -136,7 +136,7 @@ class SummaryIntake {
   }  ///< end of the newest window; INT64_MIN: none
 
  private:
-  const std::string estimate_, late_, table_, status_, event_, acknowledged_;  ///< channels
+  const std::map<std::string, Kind> kinds_;  ///< by channel
   std::function<void()> before_other_names_;
   PeriodCollector collector_;
   SummaryBatch batch_;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "daemon/monitor/estimation/estimation_events.h"
-#include "daemon/monitor/estimation/input_events.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/identify/groups/layout_prediction.h"

@@ -117,8 +117,7 @@ std::vector<std::string> Estimation::section_names() {
 std::string Estimation::load(const std::vector<StateSection>& sections) {
   std::string spoilt;
   each_section([&](const char* name, const auto& archive) {
-    const auto section = std::find_if(sections.begin(), sections.end(),
-                                      [&](const StateSection& s) { return s.name == name; });
+    const auto section = std::ranges::find(sections, name, &StateSection::name);
     if (section == sections.end() || !spoilt.empty()) return;
     estimator::StateReader reader(section->bytes);
     archive(reader);

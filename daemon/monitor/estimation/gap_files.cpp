@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -61,10 +60,7 @@ void log_lost(const std::string& name, const std::string& why) {
 
 void store_segment(drivers::AccelMessages messages, std::size_t axes, const std::string& store,
                    const std::string& name, std::vector<estimator::AccelSample>& samples) {
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const estimator::AccelSample& a, const estimator::AccelSample& b) {
-                     return a.time < b.time;
-                   });
+  std::ranges::stable_sort(samples, {}, &estimator::AccelSample::time);
   std::error_code failure;
   std::filesystem::create_directories(store, failure);
   const std::string path = (std::filesystem::path(store) / name).string();

@@ -304,8 +304,7 @@ std::optional<event_t> intake_event(const IntakeNotice& n, const Config& config,
   event_t m{};
   m.time_us = m.since_us = now_us;
   m.id = kFirstIntakeId + static_cast<std::int64_t>(kind * config.pipeline.axes.size() + n.axis);
-  const auto before = std::find_if(raised.all().begin(), raised.all().end(),
-                                   [&](const event_t& e) { return e.id == m.id; });
+  const auto before = std::ranges::find(raised.all(), m.id, &event_t::id);
   if (n.over && before == raised.all().end()) return std::nullopt;
   if (n.over) m.since_us = before->since_us;
   m.state = n.over ? event_state::cleared : event_state::raised;

@@ -20,7 +20,6 @@
 #include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_overview.h"
-#include "daemon/monitor/history/history_request.h"
 #include "daemon/monitor/history/raw_export.h"
 #include "daemon/monitor/history/raw_history_reader.h"
 #include "daemon/monitor/history/summary_query.h"

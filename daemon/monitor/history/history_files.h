@@ -7,6 +7,9 @@
 
 namespace framewatch::daemon {
 
+/// Later than any time in a history; -kEver_us is earlier than any.
+inline constexpr std::int64_t kEver_us = INT64_MAX / 4;
+
 /// Paths in a history's directory.
 std::string raw_folder(const std::string& directory);    ///< raw logs
 std::string event_folder(const std::string& directory);  ///< raw samples of events, kept forever

@@ -11,9 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 
@@ -26,7 +24,6 @@
 #include "daemon/monitor/history/history_files.h"
 #include "drivers/files/caught.h"
 #include "drivers/files/descriptor.h"
-#include "drivers/files/durable_file.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/packed_file.h"
 #include "drivers/files/partial_file.h"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include <framewatch/event_t.hpp>
@@ -20,7 +21,6 @@ namespace {
 
 constexpr std::size_t kMaxParameters = 24, kMaxChannels = 6;
 constexpr std::int64_t kEventsTold = 5;
-constexpr std::int64_t kEver_us = INT64_MAX / 4;
 
 struct RawTotals {
   std::int64_t bytes = 0, logs = 0, open = 0, first_us = 0, last_us = 0;
@@ -84,8 +84,7 @@ std::string channel_lines(SummaryQuery& summaries) {
   std::erase_if(channels, [](const ChannelTotals& c) {
     return c.lost + c.late + c.rejected + c.stuck + c.clipped == 0;
   });
-  std::stable_sort(channels.begin(), channels.end(),
-                   [](const auto& a, const auto& b) { return a.lost > b.lost; });
+  std::ranges::stable_sort(channels, std::greater<>(), &ChannelTotals::lost);
   for (std::size_t c = 0; c < std::min(channels.size(), kMaxChannels); ++c)
     out += fmt::format("  {:<12} {} lost, {} late, {} rejected, {} stuck, {} clipped\n",
                        channels[c].name, channels[c].lost, channels[c].late, channels[c].rejected,

@@ -2,16 +2,10 @@
 #include "daemon/monitor/history/history_report.h"
 
 #include <csignal>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 
-#include <framewatch/event_t.hpp>
-#include <framewatch/history_status_t.hpp>
-
-#include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "drivers/files/encoded.h"

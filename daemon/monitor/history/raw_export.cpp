@@ -12,7 +12,6 @@
 #include "daemon/base/miniseed_file.h"
 #include "daemon/base/utc_time.h"
 #include "drivers/files/standard_streams.h"
-#include "drivers/lcm/accel_codec.h"
 #include "drivers/records/record_csv_writer.h"
 #include "estimator/numeric/nan.h"
 

@@ -112,7 +112,7 @@ bool SummaryHistory::begin_anew(const std::string& reason) {
   store_.close();
   std::vector<event_t> readable;
   if (SummaryQuery old; old.open(config_.history->directory).empty())
-    readable = old.events(INT64_MIN / 4, INT64_MAX / 4, kMaxEvents);
+    readable = old.events(-kEver_us, kEver_us, kMaxEvents);
   SetAside aside = counters().set_aside;
   set_aside_database(database, host_clock_us(), reason, aside);
   if (aside.problem.empty()) {

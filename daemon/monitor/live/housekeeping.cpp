@@ -8,7 +8,6 @@
 
 #include <framewatch/reception_t.hpp>
 
-#include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/log.h"
 #include "daemon/base/process.h"

@@ -16,7 +16,6 @@
 #include "daemon/monitor/live/state_keeper.h"
 #include "daemon/monitor/service/progress_watch.h"
 #include "daemon/monitor/service/service_manager.h"
-#include "daemon/monitor/service/start_count.h"
 
 namespace framewatch::daemon {
 

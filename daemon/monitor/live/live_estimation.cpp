@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/live/live_estimation.h"
 
-#include <utility>
-
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/actions/acknowledge.h"
-#include "daemon/monitor/live/live_intake.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -11,7 +11,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kEver_us = 2'000'000'000'000'000'000;
 constexpr double kOtherClocks_s = 60;  // the stamps of two axes may differ by this
 
 std::int64_t backlog_us(double seconds) {

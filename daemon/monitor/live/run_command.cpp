@@ -25,13 +25,10 @@
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_report.h"
 #include "daemon/monitor/live/housekeeping.h"
-#include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "daemon/monitor/live/raw_backlog.h"
 #include "daemon/monitor/service/command_socket.h"
-#include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
-#include "daemon/monitor/service/start_count.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/partial_file.h"
@@ -137,8 +134,7 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
     log(LogLevel::notice,
         fmt::format("resumed from {}: {} windows so far", path, live->estimation().windows()));
     log_lost(path, state.lost);
-    return std::none_of(state.lost.begin(), state.lost.end(),
-                        [](const LostSection& l) { return l.name == "window"; });
+    return std::ranges::find(state.lost, "window", &LostSection::name) == state.lost.end();
   }
   const std::string aside = path + ".refused";
   std::filesystem::rename(path, aside, none);

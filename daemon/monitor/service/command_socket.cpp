@@ -20,7 +20,6 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/base/process.h"
-#include "daemon/monitor/service/command_client.h"
 
 namespace framewatch::daemon {
 namespace {

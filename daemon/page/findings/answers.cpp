@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -156,8 +157,7 @@ void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
       const estimator::PeakDrift peak = peak_drift(shake.peak, s, story);
       return peak.frame < 0 ? -1 : peak.ratio;
     };
-    std::stable_sort(stories.begin(), stories.end(),
-                     [&](int a, int b) { return swayed(a) > swayed(b); });
+    std::ranges::stable_sort(stories, std::greater<>(), swayed);
     stories.resize(kMaxSwayed);
   }
   for (const int story : stories) out.more.push_back({drift_line(k, s, story)});

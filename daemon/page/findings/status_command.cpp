@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,7 +21,6 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/sections.h"
 #include "daemon/monitor/service/health.h"
-#include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/findings/finding.h"
 #include "drivers/lcm/lcm_source.h"
 

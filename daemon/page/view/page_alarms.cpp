@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/service/health.h"
 #include "daemon/page/view/page_json.h"
 

@@ -19,7 +19,6 @@ namespace {
 using estimator::kNaN;
 
 constexpr std::int32_t kObservable = 0, kQuiet = 2;  // window_estimate_t::reason
-constexpr std::int64_t kEver_us = 2'000'000'000'000'000'000;
 
 /// Returns an estimate without any value.
 window_estimate_t empty_estimate(std::size_t parameters, std::int64_t end_us) {

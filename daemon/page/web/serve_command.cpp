@@ -14,7 +14,6 @@
 #include "daemon/base/log.h"
 #include "daemon/base/signals.h"
 #include "daemon/config/sections/config_problems.h"
-#include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/metrics/metrics.h"
 #include "daemon/page/view/live_view.h"

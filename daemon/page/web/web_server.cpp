@@ -15,7 +15,6 @@
 
 #include "daemon/base/served_file.h"
 #include "daemon/page/view/live_view.h"
-#include "daemon/page/web/web_admission.h"
 #include "daemon/page/web/web_answer.h"
 #include "daemon/page/web/web_files.h"
 #include "daemon/page/web/web_sessions.h"
