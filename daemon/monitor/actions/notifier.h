@@ -88,8 +88,6 @@ class Notifier {
   Notifier(std::string name, Deliver deliver);
   /// Delivers queued events for two seconds at most. Logs how many are lost.
   ~Notifier();
-  Notifier(const Notifier&) = delete;
-  Notifier& operator=(const Notifier&) = delete;
 
   /// `patience_s`: how long attempts to deliver one event are repeated; 0: a single attempt.
   void configure(const ActionSettings& settings, double patience_s);

@@ -100,7 +100,6 @@ GapSegments::GapSegments(const Config& config) : config_(config) {
 
 GapSegments::~GapSegments() {
   if (waiting_ != 0) write();
-  finish_writing();
 }
 
 void GapSegments::sample(const estimator::AccelSample& sample) {
@@ -120,7 +119,7 @@ void GapSegments::raised(std::int64_t gap_id) {
 }
 
 void GapSegments::write() {
-  finish_writing();
+  if (writing_.valid()) writing_.wait();
   const std::int64_t from_us = raised_us_ - microseconds(config_.gap->before_s);
   std::vector<estimator::AccelSample> samples;
   for (std::size_t i = 0; i < held_; ++i) {
@@ -139,10 +138,6 @@ void GapSegments::write() {
         });
   });
   if (!thrown.empty()) log_lost(name, thrown);
-}
-
-void GapSegments::finish_writing() {
-  if (writing_.valid()) writing_.wait();
 }
 
 }  // namespace framewatch::daemon

@@ -114,10 +114,6 @@ std::string write_event_report(const EventReport& report, const Config& config,
   return problem;
 }
 
-EventReportFiles::~EventReportFiles() {
-  for (std::future<void>& one : writing_) one.wait();
-}
-
 void EventReportFiles::write(const EventReport& report, const Config& config) {
   std::erase_if(writing_, [](const std::future<void>& one) {
     return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready;

@@ -60,16 +60,11 @@ class EventReportFiles {
  public:
   static constexpr std::size_t kMax = 4;
 
-  EventReportFiles() = default;
-  ~EventReportFiles();  ///< waits until all reports are written
-  EventReportFiles(const EventReportFiles&) = delete;
-  EventReportFiles& operator=(const EventReportFiles&) = delete;
-
   /// Starts to write a report, with a copy of `config`.
   void write(const EventReport& report, const Config& config);
 
  private:
-  std::vector<std::future<void>> writing_;
+  std::vector<std::future<void>> writing_;  ///< of std::async: their destructors wait
 };
 
 }  // namespace framewatch::daemon

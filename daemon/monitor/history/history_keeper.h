@@ -55,8 +55,6 @@ class HistoryKeeper {
   explicit HistoryKeeper(HistorySettings settings);
   /// Closes the logs that wait for it.
   ~HistoryKeeper();
-  HistoryKeeper(const HistoryKeeper&) = delete;
-  HistoryKeeper& operator=(const HistoryKeeper&) = delete;
 
   /// Takes a log to close.
   void retire(std::unique_ptr<drivers::DurableFile> log);

@@ -29,16 +29,7 @@ SummaryHistory::SummaryHistory(const Config& config)
       intake_(config.lcm.prefix, config.history->summary_s.front(), [this] { commit(); }),
       next_commit_(Clock::now()),
       next_prune_(next_commit_),
-      thread_([this] { work(); }) {}
-
-SummaryHistory::~SummaryHistory() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_one();
-  thread_.join();
-}
+      thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 void SummaryHistory::message(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
   const auto kind = intake_.kind_of(channel);
@@ -58,15 +49,15 @@ SummaryHistory::Counters SummaryHistory::counters() const {
   return counters_;
 }
 
-void SummaryHistory::work() {
+void SummaryHistory::work(const std::stop_token& stop) {
   // Reads the stored periods before the first window comes.
   guarded(0, [this] { commit(); });
   for (bool last = false; !last;) {
     std::vector<Message> messages;
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      wake_.wait_for(lock, kBetweenPuts, [this] { return stop_; });
-      last = stop_;
+      wake_.wait_for(lock, stop, kBetweenPuts, [] { return false; });
+      last = stop.stop_requested();
       messages.swap(queue_);
       queued_ = 0;
     }

@@ -23,7 +23,7 @@
 #include "daemon/monitor/actions/action_report.h"
 #include "daemon/monitor/estimation/state_file.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "daemon/monitor/history/history_report.h"
+#include "daemon/monitor/history/history.h"
 #include "daemon/monitor/live/housekeeping.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "daemon/monitor/live/raw_backlog.h"
@@ -53,8 +53,6 @@ class LiveEvents {
         }) {
     actions_.raised_before(live_.estimation().raised());
   }
-  LiveEvents(const LiveEvents&) = delete;
-  LiveEvents& operator=(const LiveEvents&) = delete;
 
   /// Handles new events and requests. Call it several times a second.
   void poll() {

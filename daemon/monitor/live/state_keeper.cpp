@@ -25,10 +25,6 @@ std::string written_or_why(const std::string& path, const SavedState& state) {
 StateKeeper::StateKeeper(std::string path, int every_s)
     : path_(std::move(path)), every_us_(1'000'000LL * every_s) {}
 
-StateKeeper::~StateKeeper() {
-  if (writing_.valid()) writing_.wait();
-}
-
 void StateKeeper::update(const Config& config, Estimation& estimation, std::int64_t now_us) {
   if (path_.empty()) return;
   if (next_us_ == 0) next_us_ = now_us + every_us_;

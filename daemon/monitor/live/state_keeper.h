@@ -16,9 +16,6 @@ class StateKeeper {
  public:
   /// Without a `path` it writes nothing. `every_s` is the period.
   StateKeeper(std::string path, int every_s);
-  ~StateKeeper();
-  StateKeeper(const StateKeeper&) = delete;
-  StateKeeper& operator=(const StateKeeper&) = delete;
 
   /// Starts a write when one is due. `config` is that of the estimation.
   void update(const Config& config, Estimation& estimation, std::int64_t now_us);
@@ -39,7 +36,7 @@ class StateKeeper {
   std::string path_;
   std::int64_t every_us_, next_us_ = 0, written_us_ = 0;
   std::string problem_;
-  std::future<std::string> writing_;
+  std::future<std::string> writing_;  ///< of std::async: its destructor waits
 };
 
 }  // namespace framewatch::daemon

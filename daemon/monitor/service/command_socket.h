@@ -30,8 +30,6 @@ class CommandSocket {
   /// or "record".
   CommandSocket(const Config& config, const std::string& service, Handler handler);
   ~CommandSocket();
-  CommandSocket(const CommandSocket&) = delete;
-  CommandSocket& operator=(const CommandSocket&) = delete;
 
   /// Accepts connections, reads commands and sends answers. Call it several times a second;
   /// `now_us`: steady clock.

@@ -77,10 +77,7 @@ int serve(const ServeArguments& a) {
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
   const auto lcm = open_lcm_with_retry(*config, a.url, manager, error);
   if (!lcm && stop_requested()) return 0;
-  if (!lcm) {
-    fmt::print(stderr, "framewatch serve: {}\n", error);
-    return kBadInput;
-  }
+  if (!lcm) return refuse("serve", error);
   LiveView view(
       *config,
       [&](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
@@ -107,10 +104,7 @@ int serve(const ServeArguments& a) {
   }
   WebServer server(*settings, view);
   const int socket = listen_on(settings->address, settings->port, error);
-  if (socket < 0 || !server.start(socket, error)) {
-    fmt::print(stderr, "framewatch serve: {}\n", error);
-    return kBadInput;
-  }
+  if (socket < 0 || !server.start(socket, error)) return refuse("serve", error);
   // The operator's token must not go into logs.
   fmt::print("{}\n", page_address(*settings, server.port(),
                                   a.token_file.empty() ? settings->token : std::string()));
@@ -121,10 +115,7 @@ int serve(const ServeArguments& a) {
   RateLimitedLog failures(LogLevel::error);
   for (Clock::time_point next = Clock::now(); !stop_requested();) {
     if (!source.handle(kPoll_ms) && !stop_requested())
-      failures(
-          std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
-              .count(),
-          "LCM failed to deliver");
+      failures(steady_clock_us(), "LCM failed to deliver");
     if (Clock::now() < next) continue;
     next = std::max(next + kFlush, Clock::now());
     view.flush();
