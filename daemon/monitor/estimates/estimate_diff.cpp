@@ -11,11 +11,6 @@
 namespace framewatch::daemon {
 namespace {
 
-/// Compares bit by bit: NaN equals NaN, 0 differs from -0.
-bool same_bits(double a, double b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
 /// Returns element `i` as a double, or NaN if `values` is shorter.
 template <typename Value>
 double entry(const std::vector<Value>& values, std::size_t i) {
@@ -43,7 +38,7 @@ double FieldDifference::ratio() const {
 }
 
 void EstimateDiff::note(const std::string& subject, const std::string& field, double a, double b) {
-  if (same_bits(a, b)) return;
+  if (std::memcmp(&a, &b, sizeof a) == 0) return;  // NaN equals NaN, 0 differs from -0
   same_ = false;
   DifferenceSpan& span = spans_[subject][field];
   const FieldDifference difference{channel_, field, end_us_, a, b};

@@ -23,11 +23,6 @@ std::string number(double value) {
 
 const double kMinSnr = estimator::EstimatorOptions{}.min_snr;  // of the demo, which configures none
 
-/// Returns NaN if the estimate does not carry it.
-double snr_of(const window_estimate_t& e, std::size_t i) {
-  return i < e.snr.size() ? static_cast<double>(e.snr[i]) : estimator::kNaN;
-}
-
 bool has_value(const window_estimate_t& e, std::size_t i) {
   return i < e.value.size() && i < e.reason.size() && e.reason[i] == 0 && std::isfinite(e.value[i]);
 }
@@ -70,6 +65,7 @@ std::vector<std::string> estimate_table(const parameter_table_t& table, const wi
     const bool kilo = is_stiffness(table.kind[i]);
     const double unit = kilo ? 1e-3 : 1;
     const bool known = has_value(e, i);
+    const double snr = i < e.snr.size() ? static_cast<double>(e.snr[i]) : estimator::kNaN;
     const auto quartile = [&](const std::vector<double>& values) {
       return i < values.size() ? number(unit * values[i]) : std::string("-");
     };
@@ -78,7 +74,7 @@ std::vector<std::string> estimate_table(const parameter_table_t& table, const wi
         known ? number(unit * e.value[i]) : "-",
         known ? fmt::format("{:+.2f}", 100 * (e.value[i] / truth[i] - 1)) : "-",
         known && i < e.std_error.size() ? fmt::format("{:.2g}", unit * e.std_error[i]) : "-",
-        i < e.reason.size() ? reason_word(told_reason(e.reason[i], snr_of(e, i), kMinSnr)) : "-",
+        i < e.reason.size() ? reason_word(told_reason(e.reason[i], snr, kMinSnr)) : "-",
         quartile(e.q1), quartile(e.median), quartile(e.q3)));
   }
   return lines;

@@ -91,7 +91,11 @@ Estimation::Estimation(const Config& config, MessageSink sink, EstimationListene
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   begin_watch();
   begin_gap();
-  begin_shaking();
+  if (!config.event_report) return;
+  estimator::PipelineConfig with_axes = config.pipeline;
+  with_axes.axes = pipeline_.axes();
+  shaking_.emplace(with_axes, config.event_report->options);
+  counted_before_.resize(config.pipeline.axes.size());
 }
 
 void Estimation::begin_watch() {
@@ -108,14 +112,6 @@ void Estimation::begin_gap() {
   gap_.reset();
   if (!config_.gap) return;
   gap_.emplace(config_.pipeline, pipeline_.axes(), config_.gap->options, config_.gap->model);
-}
-
-void Estimation::begin_shaking() {
-  if (!config_.event_report) return;
-  estimator::PipelineConfig config = config_.pipeline;
-  config.axes = pipeline_.axes();
-  shaking_.emplace(config, config_.event_report->options);
-  counted_before_.resize(config_.pipeline.axes.size());
 }
 
 void Estimation::follow_shaking(const estimator::SampleSet& instant) {

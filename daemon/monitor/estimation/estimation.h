@@ -171,7 +171,6 @@ class Estimation {
   event_t with_recovery(event_t event, int parameter) const;
   void compare_gap(const estimator::SampleSet& instant);
   void follow_shaking(const estimator::SampleSet& instant);
-  void begin_shaking();
   void add_records(EventReport& report) const;
   void begin_watch();
   void begin_gap();

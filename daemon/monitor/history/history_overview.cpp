@@ -45,11 +45,6 @@ std::string raw_line(const char* what, const RawTotals& raw) {
                      raw.open > 0 ? ", one is being written" : "");
 }
 
-/// Returns the longest period.
-SummaryPeriods newest_of(const std::vector<SummaryPeriods>& periods) {
-  return periods.empty() ? SummaryPeriods{} : periods.back();
-}
-
 std::string parameter_lines(SummaryQuery& summaries, const SummaryPeriods& period) {
   const std::vector<SummaryParameter> parameters = summaries.parameters();
   if (parameters.empty() || period.count == 0) return {};
@@ -123,7 +118,7 @@ std::string history_overview(const std::string& directory, SummaryQuery& summari
     out += fmt::format("{:<12}{} periods of {} s, {} to {}\n", "summaries", p.count, p.period_s,
                        utc_text(p.first_us), utc_text(p.last_us + kSecond_us * p.period_s));
   if (periods.empty()) out += fmt::format("{:<12}none\n", "summaries");
-  out += parameter_lines(summaries, newest_of(periods));
+  if (!periods.empty()) out += parameter_lines(summaries, periods.back());
   out += channel_lines(summaries);
   const std::vector<event_t> events = summaries.events(-kEver_us, kEver_us, kEventsTold);
   if (!events.empty()) out += "\nLast events (--events for all):\n";

@@ -29,13 +29,6 @@ using Clock = std::chrono::steady_clock;
 constexpr int kPoll_ms = 10;
 constexpr std::chrono::milliseconds kFlush{50};
 
-/// Returns the first line of the token file. Returns nullopt and sets `error` if it is unreadable.
-std::optional<std::string> read_token(const std::string& path, std::string& error) {
-  auto text = read_text_file(path, error);
-  if (text) text->resize(std::min(text->size(), text->find_first_of("\r\n")));
-  return text;
-}
-
 /// Returns the settings; prints the problems and returns nullopt when they are wrong.
 std::optional<WebSettings> web_settings(const ServeArguments& a) {
   bool good = true;
@@ -44,12 +37,12 @@ std::optional<WebSettings> web_settings(const ServeArguments& a) {
   settings.connections.viewers_per_address = a.viewers_per_address;
   std::string error;
   if (!a.token_file.empty()) {
-    const auto token = read_token(a.token_file, error);
-    if (!token) {
+    const auto text = read_text_file(a.token_file, error);
+    if (!text) {
       fmt::print(stderr, "framewatch serve: {}: {}\n", a.token_file, error);
       good = false;
     }
-    settings.token = token.value_or("");
+    settings.token = text ? text->substr(0, text->find_first_of("\r\n")) : "";
   }
   for (const std::string& problem : problems(settings)) {
     fmt::print(stderr, "framewatch serve: {}\n", problem);
