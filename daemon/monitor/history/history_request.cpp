@@ -17,7 +17,6 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/keys/suggest.h"
 #include "daemon/monitor/history/history_files.h"
-#include "daemon/monitor/history/raw_export.h"
 #include "drivers/files/standard_streams.h"
 
 namespace framewatch::daemon {
@@ -40,6 +39,14 @@ std::optional<std::int64_t> read_duration(const std::string& text) {
   if (error != std::errc() || seconds == 0 || !(value > 0) || value * seconds > 1e10)
     return std::nullopt;
   return std::llround(1e6 * value * seconds);
+}
+
+/// Returns the rule that the name of an export breaks; empty if the name is valid.
+std::string problem_of_raw_name(const std::string& path) {
+  if (path == drivers::kStandardOutput) return {};
+  for (const char* ending : {".lcmlog", ".csv", ".csv.gz", ".mseed"})
+    if (path.ends_with(ending)) return {};
+  return path + ": the name for raw samples must end in .lcmlog, .csv, .csv.gz or .mseed";
 }
 
 class RequestReader {
