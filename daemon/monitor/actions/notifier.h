@@ -40,9 +40,8 @@ class ActionQueue {
   /// Returns the next event regardless of the rate limit, for the end of the program.
   std::optional<event_t> take_any();
   std::size_t waiting() const { return waiting_.size(); }
-  std::int64_t merged() const {
-    return merged_;
-  }  ///< news replaced by newer news of the same event
+  /// Returns how much news was replaced by newer news of the same event.
+  std::int64_t merged() const { return merged_; }
 
  private:
   using Key = std::pair<std::string, std::int64_t>;  ///< kind and id

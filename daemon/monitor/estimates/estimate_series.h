@@ -20,7 +20,6 @@ class EstimateSeries {
   EstimateSeries(const estimator::ParameterTable& table, bool with_errors,
                  double min_snr = estimator::EstimatorOptions{}.min_snr);
 
-  /// Adds an estimate of the main window.
   void add(const estimator::WindowEstimate& estimate);
 
   struct Series {

@@ -131,9 +131,8 @@ class SummaryIntake {
 
   SummaryBatch& batch() { return batch_; }
   PeriodCollector& collector() { return collector_; }
-  std::int64_t newest_us() const {
-    return newest_us_;
-  }  ///< end of the newest window; INT64_MIN: none
+  /// Returns the end of the newest window; INT64_MIN: none.
+  std::int64_t newest_us() const { return newest_us_; }
 
  private:
   const std::map<std::string, Kind> kinds_;  ///< by channel

@@ -54,7 +54,6 @@ class SensorSeconds {
 
 /// Returns the configured axes in the form that the drivers need.
 std::vector<drivers::WantedAxis> wanted_axes(const Config& config);
-/// Returns how the drivers take in their messages.
 drivers::IntakeSettings intake_settings(const Config& config);
 
 /// Returns the configuration with PipelineConfig::design_error, change_error and change_leak,
@@ -122,7 +121,6 @@ class Estimation {
   /// Returns the counters of every axis, of the intakes and the pipeline together.
   std::vector<estimator::AxisCounters> axis_counters() const;
   std::int64_t windows() const { return windows_; }  ///< published so far
-  /// Returns the events that are raised and not cleared.
   const RaisedEvents& raised() const { return raised_; }
   RaisedEvents& raised() { return raised_; }
   /// Makes the gap monitor simulate this model from now on. Does nothing without [gap].

@@ -36,7 +36,7 @@ void Publisher::send(std::int64_t time_us, const std::string& channel, const Mes
 
 void Publisher::parameters(std::int64_t time_us, const estimator::Pipeline& pipeline) {
   const estimator::ParameterTable& table = pipeline.parameters();
-  framewatch::parameter_table_t& m = parameters_;
+  parameter_table_t m{};
   m.time_us = time_us;
   m.structure = config_.pipeline.structure.name;
   m.config_sha256 = config_.sha256;
@@ -46,10 +46,6 @@ void Publisher::parameters(std::int64_t time_us, const estimator::Pipeline& pipe
   m.hop_rows = pipeline.hop_rows();
   m.boxplot_windows = config_.pipeline.options.boxplot_windows;
   m.parameters = table.size();
-  m.name.clear();
-  m.unit.clear();
-  m.kind.clear();
-  m.story.clear();
   for (int i = 0; i < table.size(); ++i) {
     m.name.push_back(table[i].name);
     m.unit.push_back(table[i].unit);
@@ -137,7 +133,7 @@ void Publisher::event(const event_t& event) {
 
 void Publisher::watch(std::int64_t time_us, const estimator::Watch& watch) {
   if (!sink_) return;
-  framewatch::watch_t& m = watch_;
+  watch_t m{};
   const auto count = static_cast<std::size_t>(watch.parameters());
   const estimator::Baseline none(count);
   const estimator::Baseline& usual = watch.baseline() != nullptr ? *watch.baseline() : none;
@@ -192,14 +188,11 @@ void Publisher::model(const estimator::ModelFit& fit) {
 }
 
 void Publisher::gap(const estimator::GapWindow& window) {
-  framewatch::gap_t& m = gap_;
+  gap_t m{};
   m.window_start_us = to_microseconds(window.start);
   m.window_end_us = to_microseconds(window.end);
   m.overall_nrmse = window.nrmse;
   m.noise_floor = window.floor;
-  m.name.clear();
-  m.nrmse.clear();
-  m.floor.clear();
   const std::vector<estimator::SensorAxis>& axes = config_.pipeline.axes;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     if (axes[a].story == 0) continue;

@@ -70,10 +70,7 @@ class Publisher {
   const Config& config_;
   MessageSink sink_;
   const std::vector<std::string> estimate_channels_;  ///< by WindowEstimate::window
-  framewatch::parameter_table_t parameters_{};
   framewatch::window_estimate_t estimate_{};
-  framewatch::gap_t gap_{};
-  framewatch::watch_t watch_{};
   framewatch::model_fit_t model_{};
   std::vector<std::uint8_t> bytes_;
 };

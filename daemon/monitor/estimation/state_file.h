@@ -31,7 +31,6 @@ struct SavedState {
   std::vector<StateSection> sections;
 };
 
-/// Returns the state of an estimation with this configuration.
 SavedState saved_state(const Config& config, Estimation& estimation, std::int64_t events_before);
 
 /// Returns the bytes of a state file: head with the digest of every section, digest of the head,

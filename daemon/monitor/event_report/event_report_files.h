@@ -39,9 +39,8 @@ class NewestEventReport {
   /// Reads the newest report if it is newer than the last one read. Returns the newest report, or
   /// nullopt for an empty folder.
   const std::optional<EventReportSummary>& poll();
-  const std::optional<EventReportSummary>& newest() const {
-    return newest_;
-  }  ///< as of the last poll()
+  /// Returns the newest report as of the last poll().
+  const std::optional<EventReportSummary>& newest() const { return newest_; }
 
  private:
   std::string folder_, name_;

@@ -56,7 +56,6 @@ class HistoryKeeper {
   /// Closes the logs that wait for it.
   ~HistoryKeeper();
 
-  /// Takes a log to close.
   void retire(std::unique_ptr<drivers::DurableFile> log);
   /// Sets the newest sensor time, from which the age of a log is counted.
   void newest(std::int64_t time_us);

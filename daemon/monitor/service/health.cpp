@@ -198,12 +198,12 @@ std::string span_text(double seconds) {
   return fmt::format("{} d {} h", s / 86400, s % 86400 / 3600);
 }
 
-std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t event_id) {
-  if (!heard.acknowledged) return std::nullopt;
-  const std::vector<std::int64_t>& ids = heard.acknowledged->id;
-  const auto at = std::find(ids.begin(), ids.end(), event_id);
-  if (at == ids.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - ids.begin());
+std::optional<std::size_t> acknowledgement_of(const std::optional<acknowledged_t>& acknowledged,
+                                              std::int64_t event_id) {
+  if (!acknowledged) return std::nullopt;
+  const auto at = std::ranges::find(acknowledged->id, event_id);
+  if (at == acknowledged->id.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - acknowledged->id.begin());
 }
 
 event_t raised_event(const service_t& s, std::size_t at) {
@@ -224,7 +224,8 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   std::vector<std::string> out;
   const service_t& s = *heard.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i)
-    if (s.event_severity[i] >= severity::warning && !acknowledgement_of(heard, s.event_id[i]))
+    if (s.event_severity[i] >= severity::warning &&
+        !acknowledgement_of(heard.acknowledged, s.event_id[i]))
       out.push_back(fmt::format("{} ({}, event {})", words(raised_event(s, i)), s.event_kind[i],
                                 s.event_id[i]));
   of_samples(heard, now_us, out);

@@ -89,7 +89,7 @@ std::string status_json(const Heard& h, const Config& config, const std::vector<
                       {"restarts", unit->restarts}};
   out["events"] = nlohmann::json::array();
   for (std::size_t i = 0; i < s.event_id.size(); ++i) {
-    const auto at = acknowledgement_of(h, s.event_id[i]);
+    const auto at = acknowledgement_of(h.acknowledged, s.event_id[i]);
     nlohmann::json known;
     if (at)
       known = {{"time_us", h.acknowledged->since_us[*at]},
@@ -245,7 +245,7 @@ void print_reception(const Heard& h) {
 void print_known(const Heard& h, const Config& config, std::int64_t now_us) {
   const service_t& s = *h.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i) {
-    const auto at = acknowledgement_of(h, s.event_id[i]);
+    const auto at = acknowledgement_of(h.acknowledged, s.event_id[i]);
     if (!at) continue;
     const acknowledged_t& a = *h.acknowledged;
     const std::string comment = a.comment[*at].empty() ? "" : ": " + a.comment[*at];

@@ -44,8 +44,7 @@ class PageCommands {
   std::mutex mutex_;
   std::condition_variable_any news_;
   std::deque<PageCommand> waiting_;
-  std::jthread
-      thread_;  ///< last, because it uses the members above. Finishes its command at the end
+  std::jthread thread_;  ///< last: it uses the members above. At the end it finishes its command
 };
 
 }  // namespace framewatch::daemon
