@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/numbers.h"
 #include "daemon/base/printable.h"
@@ -324,10 +325,7 @@ int status_command(const StatusArguments& a) {
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
   std::string error;
   const auto lcm = drivers::open_lcm(url, config->lcm.reception, error);
-  if (!lcm) {
-    fmt::print(stderr, "framewatch status: {}\n", error);
-    return kUnreachable;
-  }
+  if (!lcm) return refuse("status", error);
   Heard heard(*config);
   drivers::LcmSource source(
       *lcm, heard.channels(), config->lcm.queue_capacity,
