@@ -84,7 +84,6 @@ Estimation::Estimation(const Config& config, MessageSink sink, EstimationListene
           intake_settings(config)),
       can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
       can_events_(config.can),
-      absurd_events_(config.pipeline.axes),
       channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s),
       newest_us_(config.pipeline.axes.size(), INT64_MIN) {
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
@@ -267,7 +266,6 @@ std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
 void Estimation::publish_state() {
   for (const event_t& event : std::exchange(to_withdraw_, {})) announce(withdrawn(event));
   const std::vector<estimator::AxisCounters> axes = axis_counters();
-  for (const event_t& event : absurd_events_.update(axes, seconds_.newest_us())) announce(event);
   for (const event_t& event : channel_events_.update(axes, seconds_.newest_us())) announce(event);
   for (event_t event : std::vector<event_t>(raised_.all())) {
     if (!green_and_past(event, seconds_.newest_us())) continue;

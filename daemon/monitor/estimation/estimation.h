@@ -196,7 +196,6 @@ class Estimation {
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   CanEvents can_events_;
-  AbsurdEvents absurd_events_;
   ChannelEvents channel_events_;
   SensorSeconds seconds_;
   std::vector<std::int64_t> newest_us_;

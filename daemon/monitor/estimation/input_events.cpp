@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -152,56 +153,6 @@ constexpr const char* kIntakeKinds[] = {"two_senders", "sequence_leap", "duplica
 
 }  // namespace
 
-AbsurdEvents::AbsurdEvents(const std::vector<estimator::SensorAxis>& axes)
-    : axes_(axes), channels_(axes.size()) {}
-
-std::vector<event_t> AbsurdEvents::update(const std::vector<estimator::AxisCounters>& counters,
-                                          std::int64_t time_us) {
-  std::vector<event_t> out;
-  for (std::size_t a = 0; a < channels_.size(); ++a) {
-    Channel& channel = channels_[a];
-    const std::int64_t before = channel.seen;
-    channel.seen = counters[a].absurd;
-    channel.newest_us = std::min(channel.newest_us, time_us);  // the clock may have been set back
-    if (channel.seen > before) {
-      channel.newest_us = time_us;
-      if (channel.raised) continue;
-      channel.raised = true;
-      channel.since_us = time_us;
-      channel.before = before;
-    } else if (channel.raised && time_us - channel.newest_us >= kQuiet_s * kSecond_us) {
-      channel.raised = false;
-    } else {
-      continue;
-    }
-    out.push_back(event_of(a, time_us));
-  }
-  return out;
-}
-
-event_t AbsurdEvents::event_of(std::size_t axis, std::int64_t time_us) const {
-  const Channel& channel = channels_[axis];
-  const std::int64_t count = channel.seen - channel.before;
-  event_t m{};
-  m.time_us = time_us;
-  m.since_us = channel.since_us;
-  m.id = kFirstAbsurdId + static_cast<std::int64_t>(axis);
-  m.state = channel.raised ? event_state::raised : event_state::cleared;
-  m.severity = channel.raised ? severity::warning : severity::information;
-  m.kind = "absurd_samples";
-  m.place = axes_[axis].name;
-  m.value = static_cast<double>(count);
-  m.std_error = estimator::kNaN;
-  m.unit = "samples";
-  m.message = channel.raised ? fmt::format(
-                                   "{} sends values that no sensor can measure: {} so far, all "
-                                   "left out. Check the sensor",
-                                   m.place, count)
-                             : fmt::format("{} sends plausible values again; {} were left out",
-                                           m.place, count);
-  return m;
-}
-
 CanEvents::CanEvents(const drivers::CanMap& map)
     : map_(map), begun_(kCanKinds.size() * std::max(map.buses.size(), map.nodes.size())) {}
 
@@ -238,6 +189,7 @@ std::optional<event_t> CanEvents::of(const drivers::CanNotice& n) {
 ChannelEvents::ChannelEvents(const std::vector<estimator::SensorAxis>& axes, double lateness_s)
     : axes_(axes),
       silent_s_(kSilent_s + static_cast<int>(std::ceil(lateness_s))),
+      absurd_(axes.size()),
       channels_(axes.size()) {}
 
 void ChannelEvents::sample(const estimator::AccelSample& s) {
@@ -256,9 +208,27 @@ bool ChannelEvents::turns(Trouble& t, bool speaks_for, bool speaks_against, int 
   return true;
 }
 
+bool ChannelEvents::turns(Absurd& absurd, std::int64_t seen, std::int64_t time_us) {
+  const std::int64_t before = std::exchange(absurd.seen, seen);
+  absurd.newest_us = std::min(absurd.newest_us, time_us);  // the clock may have been set back
+  if (seen > before) {
+    absurd.newest_us = time_us;
+    if (absurd.raised) return false;
+    absurd.raised = true;
+    absurd.since_us = time_us;
+    absurd.before = before;
+    return true;
+  }
+  if (!absurd.raised || time_us - absurd.newest_us < kQuiet_s * kSecond_us) return false;
+  absurd.raised = false;
+  return true;
+}
+
 std::vector<event_t> ChannelEvents::update(const std::vector<estimator::AxisCounters>& counters,
                                            std::int64_t time_us) {
   std::vector<event_t> out;
+  for (std::size_t a = 0; a < absurd_.size(); ++a)
+    if (turns(absurd_[a], counters[a].absurd, time_us)) out.push_back(absurd_event(a, time_us));
   for (std::size_t a = 0; a < channels_.size(); ++a) {
     Channel& c = channels_[a];
     const std::int64_t came = counters[a].received - c.received;
@@ -280,21 +250,45 @@ std::vector<event_t> ChannelEvents::update(const std::vector<estimator::AxisCoun
   return out;
 }
 
-event_t ChannelEvents::event_of(std::size_t axis, const Trouble& trouble, bool silent,
-                                std::int64_t time_us) const {
+/// Returns an event of a channel without its id, kind, value and message.
+event_t ChannelEvents::news_of(std::size_t axis, bool raised, std::int64_t since_us,
+                               std::int64_t time_us) const {
   event_t m{};
   m.time_us = time_us;
-  m.since_us = trouble.since_us;
-  m.id = kFirstChannelId + 2 * static_cast<std::int64_t>(axis) + (silent ? 0 : 1);
-  m.state = trouble.raised ? event_state::raised : event_state::cleared;
-  m.severity = trouble.raised ? severity::warning : severity::information;
-  m.kind = silent ? "channel_silent" : "channel_stuck";
+  m.since_us = since_us;
+  m.state = raised ? event_state::raised : event_state::cleared;
+  m.severity = raised ? severity::warning : severity::information;
   m.place = axes_[axis].name;
-  m.value = 1e-6 * static_cast<double>(time_us - trouble.since_us);
   m.std_error = estimator::kNaN;
+  return m;
+}
+
+event_t ChannelEvents::event_of(std::size_t axis, const Trouble& trouble, bool silent,
+                                std::int64_t time_us) const {
+  event_t m = news_of(axis, trouble.raised, trouble.since_us, time_us);
+  m.id = kFirstChannelId + 2 * static_cast<std::int64_t>(axis) + (silent ? 0 : 1);
+  m.kind = silent ? "channel_silent" : "channel_stuck";
+  m.value = 1e-6 * static_cast<double>(time_us - trouble.since_us);
   m.unit = "s";
   m.message = silent ? silent_message(m.place, trouble.raised, channels_[axis].received > 0)
                      : stuck_message(m.place, trouble.raised);
+  return m;
+}
+
+event_t ChannelEvents::absurd_event(std::size_t axis, std::int64_t time_us) const {
+  const Absurd& absurd = absurd_[axis];
+  const std::int64_t count = absurd.seen - absurd.before;
+  event_t m = news_of(axis, absurd.raised, absurd.since_us, time_us);
+  m.id = kFirstAbsurdId + static_cast<std::int64_t>(axis);
+  m.kind = "absurd_samples";
+  m.value = static_cast<double>(count);
+  m.unit = "samples";
+  m.message = absurd.raised ? fmt::format(
+                                  "{} sends values that no sensor can measure: {} so far, all "
+                                  "left out. Check the sensor",
+                                  m.place, count)
+                            : fmt::format("{} sends plausible values again; {} were left out",
+                                          m.place, count);
   return m;
 }
 
