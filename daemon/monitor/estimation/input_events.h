@@ -53,9 +53,10 @@ class CanEvents {
 /// Reports dead and absurd channels with three kinds of events. A "channel_silent" has had no
 /// sample for kSilent_s plus the wait for late samples, while others send; its next sample clears
 /// the event. A "channel_stuck" has had most samples of kStuck_s left out because they did not
-/// change while the building moved; changes for kMoving_s clear the event. "absurd_samples" are
-/// values that no sensor can have measured (AxisCounters::absurd); kQuiet_s without one clear the
-/// event. Ids depend only on kind and channel and are larger than those of all other events.
+/// change while the building moved; changes for kMoving_s clear the event. A channel with
+/// "absurd_samples" sends values that no sensor can have measured (AxisCounters::absurd). It clears
+/// after kQuiet_s without one. Ids depend only on kind and channel and are larger than those of all
+/// other events.
 class ChannelEvents {
  public:
   static constexpr int kSilent_s = 5, kStuck_s = 2, kMoving_s = 3, kQuiet_s = 600;
