@@ -232,8 +232,6 @@ std::unique_ptr<RawExport> raw_export(const HistoryArguments& arguments,
 
 constexpr std::int64_t kProgressSamples = 1 << 14;
 
-/// Writes the requested raw samples to the file HistoryArguments::raw and prints notes about it.
-/// After a problem no file remains.
 class RawJob {
  public:
   RawJob(const HistoryArguments& arguments, const HistoryRequest& request,
