@@ -22,7 +22,6 @@
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/service/command_client.h"
-#include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "drivers/files/caught.h"
 #include "drivers/files/encoded.h"

@@ -2,20 +2,15 @@
 #include "daemon/monitor/actions/acknowledge.h"
 
 #include <charconv>
-#include <optional>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 #include <lcm/lcm-cpp.hpp>
 
-#include <framewatch/acknowledge_t.hpp>
-#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/event_t.hpp>
 
 #include "daemon/base/printable.h"
-#include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/service/command_client.h"

@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
-#include <string>
-#include <utility>
 
 #include <fmt/core.h>
 

@@ -40,9 +40,8 @@ class ActionQueue {
   /// Returns the next event regardless of the rate limit, for the end of the program.
   std::optional<event_t> take_any();
   std::size_t waiting() const { return waiting_.size(); }
-  std::int64_t merged() const {
-    return merged_;
-  }  ///< news replaced by newer news of the same event
+  /// Returns how much news was replaced by newer news of the same event.
+  std::int64_t merged() const { return merged_; }
 
  private:
   using Key = std::pair<std::string, std::int64_t>;  ///< kind and id
@@ -88,18 +87,13 @@ class Notifier {
   Notifier(std::string name, Deliver deliver);
   /// Delivers queued events for two seconds at most. Logs how many are lost.
   ~Notifier();
-  Notifier(const Notifier&) = delete;
-  Notifier& operator=(const Notifier&) = delete;
 
   /// `patience_s`: how long attempts to deliver one event are repeated; 0: a single attempt.
   void configure(const ActionSettings& settings, double patience_s);
-  /// Tells that an earlier run has delivered the event: only its end is delivered.
+  // As in ActionQueue.
   void delivered_before(const event_t& event);
-  /// Queues an event. Of an `acknowledged` event only the end is delivered.
   void event(const event_t& event, bool acknowledged);
-  /// Tells that the event was acknowledged: only its end is still delivered.
   void acknowledged(const event_t& event);
-  /// Returns the counters so far.
   Counters counters() const;
 
  private:

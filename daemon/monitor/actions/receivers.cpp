@@ -17,6 +17,7 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 #include <curl/curl.h>
@@ -155,12 +156,10 @@ int should_stop(void* abandoned, curl_off_t, curl_off_t, curl_off_t, curl_off_t)
 
 /// Adds one header per line; skips empty lines and comments (#).
 void add_lines(Headers& headers, const std::string& text) {
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t to = std::min(text.find('\n', from), text.size());
-    std::string line = text.substr(from, to - from);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
     if (!line.empty() && line.front() != '#') add(headers, line);
-    from = to + 1;
   }
 }
 

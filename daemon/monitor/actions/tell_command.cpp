@@ -23,10 +23,7 @@ int tell_command(const TellArguments& a) {
   const std::optional<Config> config = load_config(a.config, problems);
   print_problems(problems);
   if (!config) return kBadInput;
-  if (!config->actions) {
-    fmt::print(stderr, "framewatch tell: {} has no [actions]\n", a.config);
-    return kBadInput;
-  }
+  if (!config->actions) return refuse("tell", a.config + " has no [actions]");
   event_t event{};
   event.time_us = event.since_us = event.id = host_clock_us();
   event.state = event_state::cleared;

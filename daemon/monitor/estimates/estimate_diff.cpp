@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+
+#include "daemon/monitor/estimates/estimate_table.h"
 
 namespace framewatch::daemon {
 namespace {
-
-/// Compares bit by bit: NaN equals NaN, 0 differs from -0.
-bool same_bits(double a, double b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
 
 /// Returns element `i` as a double, or NaN if `values` is shorter.
 template <typename Value>
@@ -40,7 +38,7 @@ double FieldDifference::ratio() const {
 }
 
 void EstimateDiff::note(const std::string& subject, const std::string& field, double a, double b) {
-  if (same_bits(a, b)) return;
+  if (std::memcmp(&a, &b, sizeof a) == 0) return;  // NaN equals NaN, 0 differs from -0
   same_ = false;
   DifferenceSpan& span = spans_[subject][field];
   const FieldDifference difference{channel_, field, end_us_, a, b};
@@ -83,11 +81,7 @@ void EstimateDiff::compare(const std::string& channel, const window_estimate_t& 
   if (a.held_end_us != b.held_end_us || a.held_index != b.held_index)
     note("window", "held_end_us, held_index", static_cast<double>(a.held),
          static_cast<double>(b.held));
-  columns("q1", a.q1, b.q1);
-  columns("median", a.median, b.median);
-  columns("q3", a.q3, b.q3);
-  columns("whisker_low", a.whisker_low, b.whisker_low);
-  columns("whisker_high", a.whisker_high, b.whisker_high);
+  for (const BoxColumn& box : kBoxColumns) columns(box.name, a.*box.values, b.*box.values);
   columns("outliers", a.outliers, b.outliers);
   columns("boxplot_count", a.boxplot_count, b.boxplot_count);
   ++compared_;

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -13,11 +13,15 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/base/mat_file.h"
+#include "daemon/monitor/estimates/estimate_table.h"
 #include "drivers/files/number_text.h"
+#include "drivers/files/partial_file.h"
 #include "drivers/files/standard_streams.h"
+#include "drivers/files/text_output.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/lcm_provider.h"
 #include "drivers/lcm/message_check.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -70,9 +74,9 @@ std::string header(const std::vector<std::string>& names, bool boxplot) {
 std::string boxplot_cells(const window_estimate_t& estimate, std::size_t i) {
   if (i >= static_cast<std::size_t>(estimate.boxplots) || estimate.boxplot_count[i] == 0)
     return ",,,,,,";
-  return cell(estimate.q1[i]) + cell(estimate.median[i]) + cell(estimate.q3[i]) +
-         cell(estimate.whisker_low[i]) + cell(estimate.whisker_high[i]) +
-         fmt::format(",{}", estimate.outliers[i]);
+  std::string cells;
+  for (const BoxColumn& column : kBoxColumns) cells += cell((estimate.*column.values)[i]);
+  return cells + fmt::format(",{}", estimate.outliers[i]);
 }
 
 std::string row(const window_estimate_t& estimate, bool boxplot) {
@@ -86,7 +90,121 @@ std::string row(const window_estimate_t& estimate, bool boxplot) {
   return line + "\n";
 }
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+/// Returns what is wrong with an estimate of that many parameters; empty if it is valid.
+std::string fault_of(const window_estimate_t& estimate, std::size_t parameters) {
+  if (estimate.value.size() != parameters)
+    return fmt::format("{} parameters where the table has {}", estimate.value.size(), parameters);
+  if (estimate.boxplots != 0 && estimate.boxplots != estimate.parameters)
+    return fmt::format("{} boxplots for {} parameters", estimate.boxplots, estimate.parameters);
+  if (estimate.status < 0 || estimate.status >= static_cast<int>(kStatus.size()))
+    return fmt::format("status {} is not 0, 1 or 2", estimate.status);
+  for (std::size_t i = 0; i < parameters; ++i)
+    if (estimate.reason[i] == 0 && !std::isfinite(estimate.value[i]))
+      return fmt::format("parameter {} is observable and has no value", i);
+  return "";
+}
+
+/// Writes estimates as CSV, one row per window (docs/formats.md), compressed if the name ends in
+/// .gz. Methods return false when the file cannot be written or a message breaks the rules of its
+/// type; error() says why.
+class EstimatesCsvWriter {
+ public:
+  [[nodiscard]] bool open(const EstimateFile& file, const std::vector<std::string>& names,
+                          const std::vector<std::string>& /*units*/) {
+    parameters_ = names.size();
+    boxplot_ = file.boxplot;
+    return file_.open(file.path) && (file.goes_on || file_.write(header(names, boxplot_)));
+  }
+  [[nodiscard]] bool write(const window_estimate_t& estimate) {
+    fault_ = fault_of(estimate, parameters_);
+    return fault_.empty() && file_.write(row(estimate, boxplot_));
+  }
+  [[nodiscard]] bool close() { return file_.close(); }
+  const std::string& error() const { return fault_.empty() ? file_.error() : fault_; }
+  /// Returns true if a message caused the failure.
+  bool at_fault() const { return !fault_.empty(); }
+
+ private:
+  drivers::TextOutput file_;
+  std::string fault_;
+  std::size_t parameters_ = 0;
+  bool boxplot_ = false;
+};
+
+/// Collects estimates and writes them as a MATLAB file, version 5 (docs/formats.md). Variables:
+/// `parameter` and `unit`, columns of names; `window_end_s` and `status`, columns; `value`,
+/// `std_error` and `observable`, windows x parameters; with boxplots also `q1`, `median`, `q3`,
+/// `whisker_low`, `whisker_high`, `outliers`, windows x parameters. NaN stands for a missing value.
+/// Equal estimates give byte-identical files. The format limits each variable to 2 GiB.
+class EstimatesMatWriter {
+ public:
+  [[nodiscard]] bool open(const EstimateFile& file, const std::vector<std::string>& names,
+                          const std::vector<std::string>& units) {
+    names_ = names;
+    units_ = units;
+    boxplot_ = file.boxplot;
+    for (const char* name : {"value", "std_error", "observable"}) columns_.push_back({name, {}});
+    if (boxplot_) {
+      for (const BoxColumn& column : kBoxColumns) columns_.push_back({column.name, {}});
+      columns_.push_back({"outliers", {}});
+    }
+    // Opening the file first reports a missing folder before the work begins.
+    if (out_.open(file.path)) return true;
+    error_ = out_.error();
+    return false;
+  }
+
+  [[nodiscard]] bool write(const window_estimate_t& e) {
+    error_ = fault_of(e, names_.size());
+    if (!error_.empty()) return false;
+    if ((columns_[0].values.size() + names_.size()) * sizeof(double) > MatFile::kMaxBytes) {
+      error_ =
+          "a variable of a MATLAB 5 file holds at most 2 GiB: shorten with --from and --to, or "
+          "write a .csv.gz";
+      return false;
+    }
+    end_s_.push_back(static_cast<double>(e.window_end_us) / 1e6);
+    status_.push_back(e.status);
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const bool observable = e.reason[i] == 0;
+      columns_[0].values.push_back(observable ? e.value[i] : estimator::kNaN);
+      columns_[1].values.push_back(observable ? e.std_error[i] : estimator::kNaN);
+      columns_[2].values.push_back(observable);
+      if (!boxplot_) continue;
+      const bool box = e.boxplots > 0 && e.boxplot_count[i] > 0;
+      for (std::size_t c = 0; c < std::size(kBoxColumns); ++c)
+        columns_[3 + c].values.push_back(box ? (e.*kBoxColumns[c].values)[i] : estimator::kNaN);
+      columns_.back().values.push_back(box ? e.outliers[i] : estimator::kNaN);
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool close() {
+    error_ = write_mat_file(out_, [&](MatFile& file) {
+      bool good = file.texts("parameter", names_) && file.texts("unit", units_) &&
+                  file.matrix("window_end_s", end_s_, 1) && file.matrix("status", status_, 1);
+      for (const Column& column : columns_)
+        good = good && file.matrix(column.name, column.values, names_.size());
+      return good;
+    });
+    return error_.empty();
+  }
+
+  const std::string& error() const { return error_; }
+
+ private:
+  struct Column {
+    const char* name;
+    std::vector<double> values;  ///< window-major
+  };
+
+  drivers::PartialFile out_;
+  std::string error_;
+  std::vector<std::string> names_, units_;
+  bool boxplot_ = false;
+  std::vector<double> end_s_, status_;
+  std::vector<Column> columns_;
+};
 
 class LogOutput : public EstimateOutput {
  public:
@@ -119,9 +237,7 @@ class TableOutput : public EstimateOutput {
       names.push_back(table_[i].name);
       units.push_back(table_[i].unit);
     }
-    if constexpr (requires { writer_.continue_table(); })
-      if (file.goes_on) writer_.continue_table();
-    return writer_.open(file.path, names, units, file.boxplot);
+    return writer_.open(file, names, units);
   }
   bool put(std::int64_t, const std::string& channel,
            const std::vector<std::uint8_t>& bytes) override {
@@ -166,41 +282,12 @@ bool is_csv(const std::string& path) {
 
 }  // namespace
 
-std::string fault_of(const window_estimate_t& estimate, std::size_t parameters) {
-  if (estimate.value.size() != parameters)
-    return fmt::format("{} parameters where the table has {}", estimate.value.size(), parameters);
-  if (estimate.boxplots != 0 && estimate.boxplots != estimate.parameters)
-    return fmt::format("{} boxplots for {} parameters", estimate.boxplots, estimate.parameters);
-  if (estimate.status < 0 || estimate.status >= static_cast<int>(kStatus.size()))
-    return fmt::format("status {} is not 0, 1 or 2", estimate.status);
-  for (std::size_t i = 0; i < parameters; ++i)
-    if (estimate.reason[i] == 0 && !std::isfinite(estimate.value[i]))
-      return fmt::format("parameter {} is observable and has no value", i);
-  return "";
-}
-
-bool EstimatesCsvWriter::open(const std::string& path, const std::vector<std::string>& names,
-                              const std::vector<std::string>&, bool boxplot) {
-  parameters_ = names.size();
-  boxplot_ = boxplot;
-  return file_.open(path) && (continued_ || file_.write(header(names, boxplot)));
-}
-
-bool EstimatesCsvWriter::write(const window_estimate_t& estimate) {
-  fault_ = fault_of(estimate, parameters_);
-  return fault_.empty() && file_.write(row(estimate, boxplot_));
-}
-
-bool EstimatesCsvWriter::close() {
-  return file_.close();
-}
-
 bool write_estimates_csv(const std::string& log, const std::string& channel, bool boxplot,
                          const std::string& out, std::vector<Problem>& problems) {
   const auto names = parameter_names(log, problems);
   if (!names) return false;
   EstimatesCsvWriter file;
-  if (!file.open(out, *names, {}, boxplot)) {
+  if (!file.open({out, boxplot}, *names, {})) {
     problems.push_back({out, file.error()});
     return false;
   }
@@ -219,60 +306,6 @@ bool write_estimates_csv(const std::string& log, const std::string& channel, boo
       problems);
   if (problems.empty() && !file.close()) problems.push_back({out, file.error()});
   return problems.empty();
-}
-
-bool EstimatesMatWriter::open(const std::string& path, const std::vector<std::string>& names,
-                              const std::vector<std::string>& units, bool boxplot) {
-  names_ = names;
-  units_ = units;
-  boxplot_ = boxplot;
-  for (const char* name : {"value", "std_error", "observable"}) columns_.push_back({name, {}});
-  if (boxplot)
-    for (const char* name : {"q1", "median", "q3", "whisker_low", "whisker_high", "outliers"})
-      columns_.push_back({name, {}});
-  // Opening the file first reports a missing folder before the work begins.
-  if (out_.open(path)) return true;
-  error_ = out_.error();
-  return false;
-}
-
-bool EstimatesMatWriter::write(const window_estimate_t& e) {
-  error_ = fault_of(e, names_.size());
-  if (!error_.empty()) return false;
-  if ((columns_[0].values.size() + names_.size()) * sizeof(double) > MatFile::kMaxBytes) {
-    error_ =
-        "a variable of a MATLAB 5 file holds at most 2 GiB: shorten with --from and --to, or "
-        "write a .csv.gz";
-    return false;
-  }
-  end_s_.push_back(static_cast<double>(e.window_end_us) / 1e6);
-  status_.push_back(e.status);
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    const bool observable = e.reason[i] == 0;
-    columns_[0].values.push_back(observable ? e.value[i] : kNone);
-    columns_[1].values.push_back(observable ? e.std_error[i] : kNone);
-    columns_[2].values.push_back(observable);
-    if (!boxplot_) continue;
-    const bool box = e.boxplots > 0 && e.boxplot_count[i] > 0;
-    columns_[3].values.push_back(box ? e.q1[i] : kNone);
-    columns_[4].values.push_back(box ? e.median[i] : kNone);
-    columns_[5].values.push_back(box ? e.q3[i] : kNone);
-    columns_[6].values.push_back(box ? e.whisker_low[i] : kNone);
-    columns_[7].values.push_back(box ? e.whisker_high[i] : kNone);
-    columns_[8].values.push_back(box ? e.outliers[i] : kNone);
-  }
-  return true;
-}
-
-bool EstimatesMatWriter::close() {
-  error_ = write_mat_file(out_, [&](MatFile& file) {
-    bool good = file.texts("parameter", names_) && file.texts("unit", units_) &&
-                file.matrix("window_end_s", end_s_, 1) && file.matrix("status", status_, 1);
-    for (const Column& column : columns_)
-      good = good && file.matrix(column.name, column.values, names_.size());
-    return good;
-  });
-  return error_.empty();
 }
 
 std::string problem_of_output_name(const std::string& path) {

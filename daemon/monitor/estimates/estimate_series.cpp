@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "estimator/numeric/nan.h"
+
 namespace framewatch::daemon {
 
 EstimateSeries::EstimateSeries(const estimator::ParameterTable& table, bool with_errors,
@@ -20,10 +22,10 @@ void EstimateSeries::add(const estimator::WindowEstimate& estimate) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     Series& series = parameters_[i];
     const bool observable = estimate.reason[i] == estimator::Observability::observable;
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    series.value.push_back(observable ? estimate.value[i] : kNone);
+    series.value.push_back(observable ? estimate.value[i] : estimator::kNaN);
     if (with_errors_)
-      series.std_error.push_back(static_cast<float>(observable ? estimate.std_error[i] : kNone));
+      series.std_error.push_back(
+          static_cast<float>(observable ? estimate.std_error[i] : estimator::kNaN));
     const int reason = told_reason(static_cast<int>(estimate.reason[i]), estimate.snr[i], min_snr_);
     ++series.reasons.at(static_cast<std::size_t>(reason));
   }
@@ -49,7 +51,7 @@ EstimateSeries::Quartiles EstimateSeries::quartiles(const Series& series, Range 
 std::array<double, 3> quartiles_of(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
   std::array<double, 3> out;
-  out.fill(std::numeric_limits<double>::quiet_NaN());
+  out.fill(estimator::kNaN);
   if (values.empty()) return out;
   auto from = values.begin();  // sorts only what the quartiles need
   for (std::size_t q = 0; q < out.size(); ++q) {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,6 @@ class EstimateSeries {
   EstimateSeries(const estimator::ParameterTable& table, bool with_errors,
                  double min_snr = estimator::EstimatorOptions{}.min_snr);
 
-  /// Adds an estimate of the main window.
   void add(const estimator::WindowEstimate& estimate);
 
   struct Series {
@@ -35,7 +33,6 @@ class EstimateSeries {
   const std::vector<std::int64_t>& end_us() const { return end_us_; }
   std::int64_t windows() const { return static_cast<std::int64_t>(end_us_.size()); }
 
-  /// The windows that end in [from_us, to_us].
   struct Range {
     std::size_t begin, end;
   };

@@ -23,11 +23,6 @@ std::string number(double value) {
 
 const double kMinSnr = estimator::EstimatorOptions{}.min_snr;  // of the demo, which configures none
 
-/// Returns NaN if the estimate does not carry it.
-double snr_of(const window_estimate_t& e, std::size_t i) {
-  return i < e.snr.size() ? static_cast<double>(e.snr[i]) : estimator::kNaN;
-}
-
 bool has_value(const window_estimate_t& e, std::size_t i) {
   return i < e.value.size() && i < e.reason.size() && e.reason[i] == 0 && std::isfinite(e.value[i]);
 }
@@ -35,24 +30,10 @@ bool has_value(const window_estimate_t& e, std::size_t i) {
 }  // namespace
 
 const char* reason_word(int reason) {
-  switch (reason) {
-    case 0:
-      return "ok";
-    case 1:
-      return "warming up";
-    case 2:
-      return "quiet";
-    case 3:
-      return "floor too stiff";
-    case 4:
-      return "plan symmetric";
-    case 5:
-      return "channel lost";
-    case kTooUncertain:
-      return "too uncertain";
-    default:
-      return "?";
-  }
+  constexpr std::array<const char*, kReasons> kWords = {
+      "ok",           "warming up",   "quiet", "floor too stiff", "plan symmetric",
+      "channel lost", "too uncertain"};
+  return reason >= 0 && reason < kReasons ? kWords[static_cast<std::size_t>(reason)] : "?";
 }
 
 EstimateErrors errors_against(const parameter_table_t& table, const window_estimate_t& e,
@@ -84,6 +65,7 @@ std::vector<std::string> estimate_table(const parameter_table_t& table, const wi
     const bool kilo = is_stiffness(table.kind[i]);
     const double unit = kilo ? 1e-3 : 1;
     const bool known = has_value(e, i);
+    const double snr = i < e.snr.size() ? static_cast<double>(e.snr[i]) : estimator::kNaN;
     const auto quartile = [&](const std::vector<double>& values) {
       return i < values.size() ? number(unit * values[i]) : std::string("-");
     };
@@ -92,7 +74,7 @@ std::vector<std::string> estimate_table(const parameter_table_t& table, const wi
         known ? number(unit * e.value[i]) : "-",
         known ? fmt::format("{:+.2f}", 100 * (e.value[i] / truth[i] - 1)) : "-",
         known && i < e.std_error.size() ? fmt::format("{:.2g}", unit * e.std_error[i]) : "-",
-        i < e.reason.size() ? reason_word(told_reason(e.reason[i], snr_of(e, i), kMinSnr)) : "-",
+        i < e.reason.size() ? reason_word(told_reason(e.reason[i], snr, kMinSnr)) : "-",
         quartile(e.q1), quartile(e.median), quartile(e.q3)));
   }
   return lines;

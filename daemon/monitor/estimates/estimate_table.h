@@ -7,7 +7,23 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
+#include "estimator/identify/estimate/estimate.h"
+
 namespace framewatch::daemon {
+
+/// A column of boxplot statistics in an estimate.
+struct BoxColumn {
+  const char* name;
+  std::vector<double> framewatch::window_estimate_t::*values;  ///< by parameter
+  double estimator::BoxplotStatistics::*value;
+};
+inline constexpr BoxColumn kBoxColumns[] = {
+    {"q1", &window_estimate_t::q1, &estimator::BoxplotStatistics::q1},
+    {"median", &window_estimate_t::median, &estimator::BoxplotStatistics::median},
+    {"q3", &window_estimate_t::q3, &estimator::BoxplotStatistics::q3},
+    {"whisker_low", &window_estimate_t::whisker_low, &estimator::BoxplotStatistics::whisker_low},
+    {"whisker_high", &window_estimate_t::whisker_high, &estimator::BoxplotStatistics::whisker_high},
+};
 
 /// The largest relative error, |estimate - truth| / truth, of a group of parameters.
 struct GroupError {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"

@@ -27,7 +27,6 @@ struct ParameterSummary {
   estimator::BoxplotStatistics boxplot{};
   std::vector<double> outliers;
 };
-/// Summarizes a parameter over the comparable windows of a range.
 ParameterSummary summarise(const SessionEstimates& session, std::size_t parameter,
                            WindowRange windows);
 

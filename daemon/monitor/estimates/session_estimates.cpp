@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/monitor/estimates/estimate_series.h"
 #include "daemon/monitor/estimates/estimate_table.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
@@ -28,7 +29,10 @@ class Reader {
     const auto kind = drivers::fingerprint(event.data);
     if (kind == window_estimate_t::getHash()) {
       // The channels of the other windows extend the name of the main one.
-      if (channel_.empty() || event.channel.size() < channel_.size()) follow(event.channel);
+      if (channel_.empty() || event.channel.size() < channel_.size()) {
+        channel_ = event.channel;
+        start();
+      }
       if (event.channel == channel_) estimate(event);
     } else if (kind == parameter_table_t::getHash()) {
       table(event);
@@ -159,15 +163,8 @@ estimator::BoxplotStatistics boxplot_of(std::vector<double> values) {
   if (values.empty())
     return {estimator::kNaN, estimator::kNaN, estimator::kNaN, estimator::kNaN, estimator::kNaN};
   std::sort(values.begin(), values.end());
-  const auto at = [&](double probability) {
-    const double last = static_cast<double>(values.size() - 1);
-    const double place =
-        std::clamp(probability * static_cast<double>(values.size()) - 0.5, 0.0, last);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
-  };
-  estimator::BoxplotStatistics out{at(0.25), at(0.5), at(0.75), estimator::kNaN, estimator::kNaN};
+  const auto [q1, median, q3] = quartiles_of(values);
+  estimator::BoxplotStatistics out{q1, median, q3, estimator::kNaN, estimator::kNaN};
   const double reach = 1.5 * (out.q3 - out.q1);
   const auto first = std::lower_bound(values.begin(), values.end(), out.q1 - reach);
   const auto beyond = std::upper_bound(first, values.end(), out.q3 + reach);

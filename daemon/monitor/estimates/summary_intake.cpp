@@ -6,9 +6,6 @@
 #include <iterator>
 #include <utility>
 
-#include <framewatch/status_t.hpp>
-#include <framewatch/window_estimate_t.hpp>
-
 #include "daemon/base/clocks.h"
 #include "drivers/lcm/message_check.h"
 
@@ -19,11 +16,6 @@ constexpr std::int64_t kStatusIsEarly_us = 2'000'000;  // a window comes after i
 constexpr double kBoxesPerWindow = 10;
 constexpr std::size_t kMaxTaken = 4096;
 
-std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us) {
-  const std::int64_t rest = time_us % step_us;
-  return time_us - (rest < 0 ? rest + step_us : rest);
-}
-
 using Counts = std::vector<std::int64_t>;
 
 std::array<const Counts*, ChannelData::kCounts> counts_of(const status_t& s) {
@@ -31,6 +23,11 @@ std::array<const Counts*, ChannelData::kCounts> counts_of(const status_t& s) {
 }
 
 }  // namespace
+
+std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us) {
+  const std::int64_t rest = time_us % step_us;
+  return time_us - (rest < 0 ? rest + step_us : rest);
+}
 
 std::int64_t PeriodCollector::slot(std::int64_t time_us) const {
   return floor_to(time_us, period_us_);
@@ -132,23 +129,15 @@ void PeriodCollector::taken(std::int64_t start_us, std::int64_t last_us) {
 
 SummaryIntake::SummaryIntake(const std::string& prefix, std::int64_t shortest_s,
                              std::function<void()> before_other_names)
-    : estimate_(prefix + "ESTIMATE"),
-      late_(prefix + "ESTIMATE_LATE"),
-      table_(prefix + "PARAMETERS"),
-      status_(prefix + "STATUS"),
-      event_(prefix + "EVENT"),
-      acknowledged_(prefix + "ACKNOWLEDGED"),
+    : kinds_{{prefix + "ESTIMATE", Kind::estimate}, {prefix + "ESTIMATE_LATE", Kind::late},
+             {prefix + "PARAMETERS", Kind::table},  {prefix + "STATUS", Kind::status},
+             {prefix + "EVENT", Kind::event},       {prefix + "ACKNOWLEDGED", Kind::acknowledged}},
       before_other_names_(std::move(before_other_names)),
       collector_(kSecond_us * shortest_s) {}
 
 std::optional<SummaryIntake::Kind> SummaryIntake::kind_of(const std::string& channel) const {
-  return channel == estimate_       ? Kind::estimate
-         : channel == late_         ? Kind::late
-         : channel == table_        ? Kind::table
-         : channel == status_       ? Kind::status
-         : channel == event_        ? Kind::event
-         : channel == acknowledged_ ? Kind::acknowledged
-                                    : std::optional<Kind>();
+  const auto kind = kinds_.find(channel);
+  return kind == kinds_.end() ? std::nullopt : std::optional(kind->second);
 }
 
 SummaryIntake::Taken SummaryIntake::take(Kind kind, std::span<const std::uint8_t> bytes) {

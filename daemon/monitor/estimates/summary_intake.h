@@ -19,6 +19,9 @@
 
 namespace framewatch::daemon {
 
+/// Returns the largest multiple of `step_us` that is not larger than `time_us`.
+std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us);
+
 /// One parameter in the windows that ended in a period or in a part of it.
 struct ParameterData {
   std::int64_t observable = 0;
@@ -128,12 +131,11 @@ class SummaryIntake {
 
   SummaryBatch& batch() { return batch_; }
   PeriodCollector& collector() { return collector_; }
-  std::int64_t newest_us() const {
-    return newest_us_;
-  }  ///< end of the newest window; INT64_MIN: none
+  /// Returns the end of the newest window; INT64_MIN: none.
+  std::int64_t newest_us() const { return newest_us_; }
 
  private:
-  const std::string estimate_, late_, table_, status_, event_, acknowledged_;  ///< channels
+  const std::map<std::string, Kind> kinds_;  ///< by channel
   std::function<void()> before_other_names_;
   PeriodCollector collector_;
   SummaryBatch batch_;

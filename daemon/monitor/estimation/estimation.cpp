@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "daemon/monitor/estimation/estimation_events.h"
-#include "daemon/monitor/estimation/input_events.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/identify/groups/layout_prediction.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -84,14 +84,17 @@ Estimation::Estimation(const Config& config, MessageSink sink, EstimationListene
           intake_settings(config)),
       can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
       can_events_(config.can),
-      absurd_events_(config.pipeline.axes),
       channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s),
       newest_us_(config.pipeline.axes.size(), INT64_MIN) {
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   begin_watch();
   begin_gap();
-  begin_shaking();
+  if (!config.event_report) return;
+  estimator::PipelineConfig with_axes = config.pipeline;
+  with_axes.axes = pipeline_.axes();
+  shaking_.emplace(with_axes, config.event_report->options);
+  counted_before_.resize(config.pipeline.axes.size());
 }
 
 void Estimation::begin_watch() {
@@ -108,14 +111,6 @@ void Estimation::begin_gap() {
   gap_.reset();
   if (!config_.gap) return;
   gap_.emplace(config_.pipeline, pipeline_.axes(), config_.gap->options, config_.gap->model);
-}
-
-void Estimation::begin_shaking() {
-  if (!config_.event_report) return;
-  estimator::PipelineConfig config = config_.pipeline;
-  config.axes = pipeline_.axes();
-  shaking_.emplace(config, config_.event_report->options);
-  counted_before_.resize(config_.pipeline.axes.size());
 }
 
 void Estimation::follow_shaking(const estimator::SampleSet& instant) {
@@ -156,29 +151,24 @@ void Estimation::take(estimator::Pipeline::Results&& results) {
       follow_shaking(*result.instant);
       listener_->on_instant(*result.instant);
     }
-    if (result.estimate != nullptr) main_window(*result.estimate);
+    if (result.estimate != nullptr) {
+      listener_->on_estimate(*result.estimate);
+      publisher_.estimate(*result.estimate);
+      ++windows_;
+      watch(*result.estimate);
+      if (gap_) gap_->learn(*result.estimate, pipeline_.theta0());
+      if (shaking_) shaking_->push(*result.estimate);
+    }
     if (result.other != nullptr) {
       publisher_.other(*result.other);
       watch(*result.other);
     }
     if (result.model != nullptr) publisher_.model(*result.model);
-    if (result.late != nullptr) late_window(*result.late);
+    if (result.late != nullptr) {  // the gap monitor learns only from the newest windows
+      publisher_.late(*result.late);
+      if (shaking_) shaking_->push(*result.late);
+    }
   }
-}
-
-void Estimation::main_window(const estimator::WindowEstimate& estimate) {
-  listener_->on_estimate(estimate);
-  publisher_.estimate(estimate);
-  ++windows_;
-  watch(estimate);
-  if (gap_) gap_->learn(estimate, pipeline_.theta0());
-  if (shaking_) shaking_->push(estimate);
-}
-
-/// The gap monitor does not get late windows: it learns from the newest ones.
-void Estimation::late_window(const estimator::WindowEstimate& estimate) {
-  publisher_.late(estimate);
-  if (shaking_) shaking_->push(estimate);
 }
 
 void Estimation::compare_gap(const estimator::SampleSet& instant) {
@@ -191,10 +181,6 @@ void Estimation::compare_gap(const estimator::SampleSet& instant) {
   if (news == nullptr) return;
   announce(gap_event(*news, config_));
   listener_->on_gap(*news);
-}
-
-void Estimation::adopt(const estimator::GapModel& model) {
-  if (gap_) gap_->adopt(model);
 }
 
 void Estimation::watch(const estimator::WindowEstimate& estimate) {
@@ -280,7 +266,6 @@ std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
 void Estimation::publish_state() {
   for (const event_t& event : std::exchange(to_withdraw_, {})) announce(withdrawn(event));
   const std::vector<estimator::AxisCounters> axes = axis_counters();
-  for (const event_t& event : absurd_events_.update(axes, seconds_.newest_us())) announce(event);
   for (const event_t& event : channel_events_.update(axes, seconds_.newest_us())) announce(event);
   for (event_t event : std::vector<event_t>(raised_.all())) {
     if (!green_and_past(event, seconds_.newest_us())) continue;
@@ -290,29 +275,37 @@ void Estimation::publish_state() {
   }
   const estimator::PipelineCounters pipeline = pipeline_.counters();
   const drivers::IntakeCounters& intake = intake_.counters();
-  StatusCounts counts;
-  counts.windows = pipeline.windows;
-  counts.sample_sets = pipeline.sample_sets;
-  counts.gaps = pipeline.interruptions;
-  counts.rejected_messages = intake.foreign + intake.malformed + intake.duplicate +
+  status_t status{};
+  status.time_us = seconds_.newest_us();
+  status.windows = pipeline.windows;
+  status.sample_sets = pipeline.sample_sets;
+  status.gaps = pipeline.interruptions;
+  status.queue_high_water = live_.queue_high_water;
+  status.queue_dropped = live_.queue_dropped;
+  status.latency_s = live_.latency_s;
+  status.rejected_messages = intake.foreign + intake.malformed + intake.duplicate +
                              intake.other_sender + absurd_temperatures_;
   for (std::size_t n = 0; n < can_.map().nodes.size(); ++n) {
     const drivers::CanNodeCounters node = can_.node(n);
-    counts.rejected_messages +=
+    status.rejected_messages +=
         node.wrong_length + node.wrong_kind + node.unplaced + node.duplicates + node.late;
   }
   noise_density_ = pipeline_.noise_density();
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const estimator::AxisCounters& axis = axes[i];
     const drivers::HeardNode* node = intake_.node_of(i);
-    counts.axes.push_back({axis.received, node == nullptr ? can_.lost_of(i) : node->counter.lost,
-                           axis.late, axis.repaired,
-                           axis.rejected + (node == nullptr ? 0 : node->left_out()), axis.stuck,
-                           axis.clipped});
-    if (!noise_density_.empty()) counts.axes.back().noise_density = noise_density_[i];
+    status.received.push_back(axis.received);
+    status.lost.push_back(node == nullptr ? can_.lost_of(i) : node->counter.lost);
+    status.late.push_back(axis.late);
+    status.repaired.push_back(axis.repaired);
+    status.rejected.push_back(axis.rejected + (node == nullptr ? 0 : node->left_out()));
+    status.stuck.push_back(axis.stuck);
+    status.clipped.push_back(axis.clipped);
+    status.noise_mps2_per_rthz.push_back(noise_density_.empty() ? estimator::kNaN
+                                                                : noise_density_[i]);
   }
   publisher_.parameters(seconds_.newest_us(), pipeline_);
-  publisher_.status(seconds_.newest_us(), counts, live_);
+  publisher_.status(std::move(status));
   if (watch_) publisher_.watch(seconds_.newest_us(), *watch_);
 }
 

@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <framewatch/event_t.hpp>
@@ -56,7 +54,6 @@ class SensorSeconds {
 
 /// Returns the configured axes in the form that the drivers need.
 std::vector<drivers::WantedAxis> wanted_axes(const Config& config);
-/// Returns how the drivers take in their messages.
 drivers::IntakeSettings intake_settings(const Config& config);
 
 /// Returns the configuration with PipelineConfig::design_error, change_error and change_leak,
@@ -124,11 +121,12 @@ class Estimation {
   /// Returns the counters of every axis, of the intakes and the pipeline together.
   std::vector<estimator::AxisCounters> axis_counters() const;
   std::int64_t windows() const { return windows_; }  ///< published so far
-  /// Returns the events that are raised and not cleared.
   const RaisedEvents& raised() const { return raised_; }
   RaisedEvents& raised() { return raised_; }
   /// Makes the gap monitor simulate this model from now on. Does nothing without [gap].
-  void adopt(const estimator::GapModel& model);
+  void adopt(const estimator::GapModel& model) {
+    if (gap_) gap_->adopt(model);
+  }
   /// Returns the baseline of the change detection; nullptr while it is learned and without [watch].
   const estimator::Baseline* baseline() const { return watch_ ? watch_->baseline() : nullptr; }
 
@@ -164,8 +162,6 @@ class Estimation {
   void publish_state();
   drivers::IntakeResult temperature(const void* data, std::size_t size);
   void take(estimator::Pipeline::Results&& results);
-  void main_window(const estimator::WindowEstimate& estimate);
-  void late_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
   void follow_recovery(const estimator::WindowEstimate& estimate);
   /// Returns true if the change of this parameter began with the strong motion of its recovery law.
@@ -173,7 +169,6 @@ class Estimation {
   event_t with_recovery(event_t event, int parameter) const;
   void compare_gap(const estimator::SampleSet& instant);
   void follow_shaking(const estimator::SampleSet& instant);
-  void begin_shaking();
   void add_records(EventReport& report) const;
   void begin_watch();
   void begin_gap();
@@ -201,7 +196,6 @@ class Estimation {
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   CanEvents can_events_;
-  AbsurdEvents absurd_events_;
   ChannelEvents channel_events_;
   SensorSeconds seconds_;
   std::vector<std::int64_t> newest_us_;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/estimation/estimation_events.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -67,7 +66,7 @@ void Estimation::each_section(const Visit& visit) {
   // The events of channels compare the pipeline's counters with earlier ones, so both are one
   // section.
   visit("window", [this](auto& a) {
-    a(absurd_events_, channel_events_, newest_us_);
+    a(channel_events_, newest_us_);
     archive_pipeline(a, pipeline_);
   });
   if (watch_) {
@@ -118,8 +117,7 @@ std::vector<std::string> Estimation::section_names() {
 std::string Estimation::load(const std::vector<StateSection>& sections) {
   std::string spoilt;
   each_section([&](const char* name, const auto& archive) {
-    const auto section = std::find_if(sections.begin(), sections.end(),
-                                      [&](const StateSection& s) { return s.name == name; });
+    const auto section = std::ranges::find(sections, name, &StateSection::name);
     if (section == sections.end() || !spoilt.empty()) return;
     estimator::StateReader reader(section->bytes);
     archive(reader);
@@ -157,7 +155,6 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   copy(before.intake_, intake_);
   copy(before.can_, can_);
   copy(before.can_events_, can_events_);
-  copy(before.absurd_events_, absurd_events_);
   copy(before.channel_events_, channel_events_);
   copy(before.raised_, raised_);
   windows_ = before.windows_;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -61,10 +60,7 @@ void log_lost(const std::string& name, const std::string& why) {
 
 void store_segment(drivers::AccelMessages messages, std::size_t axes, const std::string& store,
                    const std::string& name, std::vector<estimator::AccelSample>& samples) {
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const estimator::AccelSample& a, const estimator::AccelSample& b) {
-                     return a.time < b.time;
-                   });
+  std::ranges::stable_sort(samples, {}, &estimator::AccelSample::time);
   std::error_code failure;
   std::filesystem::create_directories(store, failure);
   const std::string path = (std::filesystem::path(store) / name).string();
@@ -104,7 +100,6 @@ GapSegments::GapSegments(const Config& config) : config_(config) {
 
 GapSegments::~GapSegments() {
   if (waiting_ != 0) write();
-  finish_writing();
 }
 
 void GapSegments::sample(const estimator::AccelSample& sample) {
@@ -124,7 +119,7 @@ void GapSegments::raised(std::int64_t gap_id) {
 }
 
 void GapSegments::write() {
-  finish_writing();
+  if (writing_.valid()) writing_.wait();
   const std::int64_t from_us = raised_us_ - microseconds(config_.gap->before_s);
   std::vector<estimator::AccelSample> samples;
   for (std::size_t i = 0; i < held_; ++i) {
@@ -143,10 +138,6 @@ void GapSegments::write() {
         });
   });
   if (!thrown.empty()) log_lost(name, thrown);
-}
-
-void GapSegments::finish_writing() {
-  if (writing_.valid()) writing_.wait();
 }
 
 }  // namespace framewatch::daemon

@@ -40,17 +40,13 @@ class GapSegments {
   explicit GapSegments(const Config& config);
   /// Writes the segment of a gap whose samples are still incomplete.
   ~GapSegments();
-  GapSegments(const GapSegments&) = delete;
-  GapSegments& operator=(const GapSegments&) = delete;
 
-  /// Keeps a sample.
   void sample(const estimator::AccelSample& sample);
   /// Tells that the gap with this id was raised: its segment is written when it is complete.
   void raised(std::int64_t gap_id);
 
  private:
   void write();
-  void finish_writing();
 
   const Config& config_;
   std::vector<estimator::AccelSample> ring_;
@@ -58,7 +54,7 @@ class GapSegments {
   std::int64_t newest_us_ = INT64_MIN;
   std::int64_t waiting_ = 0;  ///< gap whose samples are still coming; 0: no gap
   std::int64_t raised_us_ = 0;
-  std::future<void> writing_;
+  std::future<void> writing_;  ///< of std::async: its destructor waits
 };
 
 }  // namespace framewatch::daemon

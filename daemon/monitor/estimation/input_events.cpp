@@ -2,9 +2,10 @@
 #include "daemon/monitor/estimation/input_events.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -19,27 +20,9 @@ constexpr std::int64_t kFirstAbsurdId = std::int64_t{1} << 42;
 using Kind = drivers::CanNotice::Kind;
 
 constexpr std::int64_t kFirstId = std::int64_t{1} << 40;
-constexpr std::size_t kKinds = 7;
-
-const char* name_of(Kind kind) {
-  switch (kind) {
-    case Kind::bus_off:
-      return "bus_off";
-    case Kind::interface_gone:
-      return "interface_gone";
-    case Kind::emergency:
-      return "emergency";
-    case Kind::boot_up:
-      return "boot_up";
-    case Kind::sequence_leap:
-      return "sequence_leap";
-    case Kind::duplicates:
-      return "duplicates";
-    case Kind::losses:
-      return "losses";
-  }
-  return "";
-}
+constexpr std::array kCanKinds = {"bus_off",       "interface_gone", "emergency", "boot_up",
+                                  "sequence_leap", "duplicates",     "losses"};
+static_assert(kCanKinds.size() == static_cast<std::size_t>(Kind::losses) + 1);
 
 std::string message_of(Kind kind, const std::string& place, bool over, int code) {
   switch (kind) {
@@ -170,61 +153,11 @@ constexpr const char* kIntakeKinds[] = {"two_senders", "sequence_leap", "duplica
 
 }  // namespace
 
-AbsurdEvents::AbsurdEvents(const std::vector<estimator::SensorAxis>& axes)
-    : axes_(axes), channels_(axes.size()) {}
-
-std::vector<event_t> AbsurdEvents::update(const std::vector<estimator::AxisCounters>& counters,
-                                          std::int64_t time_us) {
-  std::vector<event_t> out;
-  for (std::size_t a = 0; a < channels_.size(); ++a) {
-    Channel& channel = channels_[a];
-    const std::int64_t before = channel.seen;
-    channel.seen = counters[a].absurd;
-    channel.newest_us = std::min(channel.newest_us, time_us);  // the clock may have been set back
-    if (channel.seen > before) {
-      channel.newest_us = time_us;
-      if (channel.raised) continue;
-      channel.raised = true;
-      channel.since_us = time_us;
-      channel.before = before;
-    } else if (channel.raised && time_us - channel.newest_us >= kQuiet_s * kSecond_us) {
-      channel.raised = false;
-    } else {
-      continue;
-    }
-    out.push_back(event_of(a, time_us));
-  }
-  return out;
-}
-
-event_t AbsurdEvents::event_of(std::size_t axis, std::int64_t time_us) const {
-  const Channel& channel = channels_[axis];
-  const std::int64_t count = channel.seen - channel.before;
-  event_t m{};
-  m.time_us = time_us;
-  m.since_us = channel.since_us;
-  m.id = kFirstAbsurdId + static_cast<std::int64_t>(axis);
-  m.state = channel.raised ? event_state::raised : event_state::cleared;
-  m.severity = channel.raised ? severity::warning : severity::information;
-  m.kind = "absurd_samples";
-  m.place = axes_[axis].name;
-  m.value = static_cast<double>(count);
-  m.std_error = std::numeric_limits<double>::quiet_NaN();
-  m.unit = "samples";
-  m.message = channel.raised ? fmt::format(
-                                   "{} sends values that no sensor can measure: {} so far, all "
-                                   "left out. Check the sensor",
-                                   m.place, count)
-                             : fmt::format("{} sends plausible values again; {} were left out",
-                                           m.place, count);
-  return m;
-}
-
 CanEvents::CanEvents(const drivers::CanMap& map)
-    : map_(map), begun_(kKinds * std::max(map.buses.size(), map.nodes.size())) {}
+    : map_(map), begun_(kCanKinds.size() * std::max(map.buses.size(), map.nodes.size())) {}
 
 std::optional<event_t> CanEvents::of(const drivers::CanNotice& n) {
-  const std::size_t width = begun_.size() / kKinds;
+  const std::size_t width = begun_.size() / kCanKinds.size();
   const auto index = static_cast<std::size_t>(n.index);
   const std::size_t at = static_cast<std::size_t>(n.kind) * width + index;
   const bool of_bus = n.kind == Kind::bus_off || n.kind == Kind::interface_gone;
@@ -246,7 +179,7 @@ std::optional<event_t> CanEvents::of(const drivers::CanNotice& n) {
   m.severity = momentary || (of_numbers && n.over) ? severity::information
                : of_numbers || n.over              ? severity::warning
                                                    : severity::alarm;
-  m.kind = name_of(n.kind);
+  m.kind = kCanKinds[static_cast<std::size_t>(n.kind)];
   m.place = place;
   m.value = n.code;
   m.message = message_of(n.kind, place, n.over, n.code);
@@ -256,6 +189,7 @@ std::optional<event_t> CanEvents::of(const drivers::CanNotice& n) {
 ChannelEvents::ChannelEvents(const std::vector<estimator::SensorAxis>& axes, double lateness_s)
     : axes_(axes),
       silent_s_(kSilent_s + static_cast<int>(std::ceil(lateness_s))),
+      absurd_(axes.size()),
       channels_(axes.size()) {}
 
 void ChannelEvents::sample(const estimator::AccelSample& s) {
@@ -274,9 +208,27 @@ bool ChannelEvents::turns(Trouble& t, bool speaks_for, bool speaks_against, int 
   return true;
 }
 
+bool ChannelEvents::turns(Absurd& absurd, std::int64_t seen, std::int64_t time_us) {
+  const std::int64_t before = std::exchange(absurd.seen, seen);
+  absurd.newest_us = std::min(absurd.newest_us, time_us);  // the clock may have been set back
+  if (seen > before) {
+    absurd.newest_us = time_us;
+    if (absurd.raised) return false;
+    absurd.raised = true;
+    absurd.since_us = time_us;
+    absurd.before = before;
+    return true;
+  }
+  if (!absurd.raised || time_us - absurd.newest_us < kQuiet_s * kSecond_us) return false;
+  absurd.raised = false;
+  return true;
+}
+
 std::vector<event_t> ChannelEvents::update(const std::vector<estimator::AxisCounters>& counters,
                                            std::int64_t time_us) {
   std::vector<event_t> out;
+  for (std::size_t a = 0; a < absurd_.size(); ++a)
+    if (turns(absurd_[a], counters[a].absurd, time_us)) out.push_back(absurd_event(a, time_us));
   for (std::size_t a = 0; a < channels_.size(); ++a) {
     Channel& c = channels_[a];
     const std::int64_t came = counters[a].received - c.received;
@@ -298,21 +250,45 @@ std::vector<event_t> ChannelEvents::update(const std::vector<estimator::AxisCoun
   return out;
 }
 
-event_t ChannelEvents::event_of(std::size_t axis, const Trouble& trouble, bool silent,
-                                std::int64_t time_us) const {
+/// Returns an event of a channel without its id, kind, value and message.
+event_t ChannelEvents::news_of(std::size_t axis, bool raised, std::int64_t since_us,
+                               std::int64_t time_us) const {
   event_t m{};
   m.time_us = time_us;
-  m.since_us = trouble.since_us;
-  m.id = kFirstChannelId + 2 * static_cast<std::int64_t>(axis) + (silent ? 0 : 1);
-  m.state = trouble.raised ? event_state::raised : event_state::cleared;
-  m.severity = trouble.raised ? severity::warning : severity::information;
-  m.kind = silent ? "channel_silent" : "channel_stuck";
+  m.since_us = since_us;
+  m.state = raised ? event_state::raised : event_state::cleared;
+  m.severity = raised ? severity::warning : severity::information;
   m.place = axes_[axis].name;
+  m.std_error = estimator::kNaN;
+  return m;
+}
+
+event_t ChannelEvents::event_of(std::size_t axis, const Trouble& trouble, bool silent,
+                                std::int64_t time_us) const {
+  event_t m = news_of(axis, trouble.raised, trouble.since_us, time_us);
+  m.id = kFirstChannelId + 2 * static_cast<std::int64_t>(axis) + (silent ? 0 : 1);
+  m.kind = silent ? "channel_silent" : "channel_stuck";
   m.value = 1e-6 * static_cast<double>(time_us - trouble.since_us);
-  m.std_error = std::numeric_limits<double>::quiet_NaN();
   m.unit = "s";
   m.message = silent ? silent_message(m.place, trouble.raised, channels_[axis].received > 0)
                      : stuck_message(m.place, trouble.raised);
+  return m;
+}
+
+event_t ChannelEvents::absurd_event(std::size_t axis, std::int64_t time_us) const {
+  const Absurd& absurd = absurd_[axis];
+  const std::int64_t count = absurd.seen - absurd.before;
+  event_t m = news_of(axis, absurd.raised, absurd.since_us, time_us);
+  m.id = kFirstAbsurdId + static_cast<std::int64_t>(axis);
+  m.kind = "absurd_samples";
+  m.value = static_cast<double>(count);
+  m.unit = "samples";
+  m.message = absurd.raised ? fmt::format(
+                                  "{} sends values that no sensor can measure: {} so far, all "
+                                  "left out. Check the sensor",
+                                  m.place, count)
+                            : fmt::format("{} sends plausible values again; {} were left out",
+                                          m.place, count);
   return m;
 }
 
@@ -322,8 +298,7 @@ std::optional<event_t> intake_event(const IntakeNotice& n, const Config& config,
   event_t m{};
   m.time_us = m.since_us = now_us;
   m.id = kFirstIntakeId + static_cast<std::int64_t>(kind * config.pipeline.axes.size() + n.axis);
-  const auto before = std::find_if(raised.all().begin(), raised.all().end(),
-                                   [&](const event_t& e) { return e.id == m.id; });
+  const auto before = std::ranges::find(raised.all(), m.id, &event_t::id);
   if (n.over && before == raised.all().end()) return std::nullopt;
   if (n.over) m.since_us = before->since_us;
   m.state = n.over ? event_state::cleared : event_state::raised;

@@ -18,46 +18,6 @@
 
 namespace framewatch::daemon {
 
-/// Reports channels that send values that no sensor can have measured (AxisCounters::absurd).
-/// Raises one event per channel with the first such value and clears it after kQuiet_s without
-/// another. Ids depend only on the channel and are larger than those of alarms and CAN events.
-class AbsurdEvents {
- public:
-  static constexpr std::int64_t kQuiet_s = 600;
-
-  /// `axes` must outlive this.
-  explicit AbsurdEvents(const std::vector<estimator::SensorAxis>& axes);
-
-  /// Returns the events raised or cleared since the last call. `counters` are by axis, `time_us` is
-  /// sensor time.
-  std::vector<event_t> update(const std::vector<estimator::AxisCounters>& counters,
-                              std::int64_t time_us);
-
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(channels_);
-  }
-
- private:
-  struct Channel {
-    std::int64_t seen = 0, before = 0;  ///< absurd samples so far, and before the event was raised
-    std::int64_t since_us = 0, newest_us = 0;
-    bool raised = false;
-
-    template <typename Archive>
-    void archive(Archive& a) {
-      for (std::int64_t* count : {&seen, &before}) a.within(*count, 0, a.kMaxCount);
-      for (std::int64_t* us : {&since_us, &newest_us})
-        a.within(*us, -2 * a.kMaxCount, 2 * a.kMaxCount);
-      a(raised);
-    }
-  };
-  event_t event_of(std::size_t axis, std::int64_t time_us) const;
-
-  const std::vector<estimator::SensorAxis>& axes_;
-  std::vector<Channel> channels_;
-};
-
 /// Turns CAN notices into events: bus_off and interface_gone of buses, emergency, boot_up,
 /// sequence_leap, duplicates and losses of nodes. Ids depend only on kind and place and are larger
 /// than those of alarms.
@@ -90,14 +50,16 @@ class CanEvents {
   std::vector<Begun> begun_;  ///< by kind, then by bus or node
 };
 
-/// Reports dead channels with two kinds of events. A "channel_silent" has had no sample for
-/// kSilent_s plus the wait for late samples, while others send; its next sample clears the event. A
-/// "channel_stuck" has had most samples of kStuck_s left out because they did not change while the
-/// building moved; changes for kMoving_s clear the event. Ids depend only on kind and channel and
-/// are larger than those of all other events.
+/// Reports dead and absurd channels with three kinds of events. A "channel_silent" has had no
+/// sample for kSilent_s plus the wait for late samples, while others send; its next sample clears
+/// the event. A "channel_stuck" has had most samples of kStuck_s left out because they did not
+/// change while the building moved; changes for kMoving_s clear the event. A channel with
+/// "absurd_samples" sends values that no sensor can have measured (AxisCounters::absurd). It clears
+/// after kQuiet_s without one. Ids depend only on kind and channel and are larger than those of all
+/// other events.
 class ChannelEvents {
  public:
-  static constexpr int kSilent_s = 5, kStuck_s = 2, kMoving_s = 3;
+  static constexpr int kSilent_s = 5, kStuck_s = 2, kMoving_s = 3, kQuiet_s = 600;
 
   /// `axes` must outlive this; `lateness_s` is the estimator's option.
   ChannelEvents(const std::vector<estimator::SensorAxis>& axes, double lateness_s);
@@ -111,10 +73,23 @@ class ChannelEvents {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(channels_);
+    a(absurd_, channels_);
   }
 
  private:
+  struct Absurd {
+    std::int64_t seen = 0, before = 0;  ///< absurd samples so far, and before the event was raised
+    std::int64_t since_us = 0, newest_us = 0;
+    bool raised = false;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      for (std::int64_t* count : {&seen, &before}) a.within(*count, 0, a.kMaxCount);
+      for (std::int64_t* us : {&since_us, &newest_us})
+        a.within(*us, -2 * a.kMaxCount, 2 * a.kMaxCount);
+      a(raised);
+    }
+  };
   /// The state of one kind of event of a channel.
   struct Trouble {
     int seconds = 0;  ///< consecutive seconds that speak for it; while it is raised, against it
@@ -145,11 +120,15 @@ class ChannelEvents {
   /// Updates the state of an event. Returns true if it is raised or cleared now.
   static bool turns(Trouble& trouble, bool speaks_for, bool speaks_against, int raise_s,
                     int clear_s);
+  static bool turns(Absurd& absurd, std::int64_t seen, std::int64_t time_us);
+  event_t news_of(std::size_t axis, bool raised, std::int64_t since_us, std::int64_t time_us) const;
   event_t event_of(std::size_t axis, const Trouble& trouble, bool silent,
                    std::int64_t time_us) const;
+  event_t absurd_event(std::size_t axis, std::int64_t time_us) const;
 
   const std::vector<estimator::SensorAxis>& axes_;
   int silent_s_;
+  std::vector<Absurd> absurd_;
   std::vector<Channel> channels_;
 };
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "daemon/config/channel_addresses.h"
+#include "daemon/monitor/estimates/estimate_table.h"
 #include "drivers/files/encoded.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 
@@ -23,18 +25,7 @@ std::vector<std::string> estimate_channels(const Config& config) {
 }
 
 Publisher::Publisher(const Config& config, MessageSink sink)
-    : config_(config),
-      sink_(std::move(sink)),
-      parameters_channel_(config.lcm.prefix + "PARAMETERS"),
-      status_channel_(config.lcm.prefix + "STATUS"),
-      event_channel_(config.lcm.prefix + "EVENT"),
-      gap_channel_(config.lcm.prefix + "GAP"),
-      watch_channel_(config.lcm.prefix + "WATCH"),
-      model_channel_(config.lcm.prefix + "MODEL_FIT") {
-  other_channels_ = estimate_channels(config);
-  estimate_channel_ = other_channels_.front();
-  other_channels_.erase(other_channels_.begin());
-}
+    : config_(config), sink_(std::move(sink)), estimate_channels_(estimate_channels(config)) {}
 
 template <typename MessageType>
 void Publisher::send(std::int64_t time_us, const std::string& channel, const MessageType& message) {
@@ -45,7 +36,7 @@ void Publisher::send(std::int64_t time_us, const std::string& channel, const Mes
 
 void Publisher::parameters(std::int64_t time_us, const estimator::Pipeline& pipeline) {
   const estimator::ParameterTable& table = pipeline.parameters();
-  framewatch::parameter_table_t& m = parameters_;
+  parameter_table_t m{};
   m.time_us = time_us;
   m.structure = config_.pipeline.structure.name;
   m.config_sha256 = config_.sha256;
@@ -55,10 +46,6 @@ void Publisher::parameters(std::int64_t time_us, const estimator::Pipeline& pipe
   m.hop_rows = pipeline.hop_rows();
   m.boxplot_windows = config_.pipeline.options.boxplot_windows;
   m.parameters = table.size();
-  m.name.clear();
-  m.unit.clear();
-  m.kind.clear();
-  m.story.clear();
   for (int i = 0; i < table.size(); ++i) {
     m.name.push_back(table[i].name);
     m.unit.push_back(table[i].unit);
@@ -67,10 +54,10 @@ void Publisher::parameters(std::int64_t time_us, const estimator::Pipeline& pipe
   }
   m.design.assign(pipeline.theta0().begin(), pipeline.theta0().end());
   m.design.resize(m.name.size());
-  m.other_windows = static_cast<std::int32_t>(other_channels_.size());
-  m.other_channel = other_channels_;
+  m.other_channel.assign(estimate_channels_.begin() + 1, estimate_channels_.end());
+  m.other_windows = static_cast<std::int32_t>(m.other_channel.size());
   m.other_rows = pipeline.other_window_rows();
-  send(time_us, parameters_channel_, m);
+  send(time_us, config_.lcm.prefix + "PARAMETERS", m);
 }
 
 void Publisher::fill_values(const estimator::WindowEstimate& e) {
@@ -87,18 +74,15 @@ void Publisher::fill_values(const estimator::WindowEstimate& e) {
   m.reason.clear();
   for (const estimator::Observability reason : e.reason)
     m.reason.push_back(static_cast<std::int32_t>(reason));
-  m.snr.clear();
-  for (const double snr : e.snr) m.snr.push_back(static_cast<float>(snr));
-  m.prior_share.clear();
-  for (const double share : e.prior_share) m.prior_share.push_back(static_cast<float>(share));
-  m.noise_share.clear();
-  for (const double share : e.noise_share) m.noise_share.push_back(static_cast<float>(share));
+  m.snr.assign(e.snr.begin(), e.snr.end());
+  m.prior_share.assign(e.prior_share.begin(), e.prior_share.end());
+  m.noise_share.assign(e.noise_share.begin(), e.noise_share.end());
   m.held_index.clear();
   m.held_value.clear();
   m.held_std_error.clear();
   m.held_end_us.clear();
   m.boxplot_windows = m.boxplots = 0;
-  for (auto* column : {&m.q1, &m.median, &m.q3, &m.whisker_low, &m.whisker_high}) column->clear();
+  for (const BoxColumn& column : kBoxColumns) (m.*column.values).clear();
   m.outliers.clear();
   m.boxplot_count.clear();
   for (std::size_t p = 0; p < e.reason.size() && e.window == 0 && !e.late; ++p) {
@@ -115,7 +99,7 @@ void Publisher::fill_values(const estimator::WindowEstimate& e) {
 void Publisher::other(const estimator::WindowEstimate& e) {
   if (!sink_) return;
   fill_values(e);
-  send(estimate_.window_end_us, other_channels_[static_cast<std::size_t>(e.window - 1)], estimate_);
+  send(estimate_.window_end_us, estimate_channels_[static_cast<std::size_t>(e.window)], estimate_);
 }
 
 void Publisher::estimate(const estimator::WindowEstimate& e) {
@@ -128,33 +112,28 @@ void Publisher::estimate(const estimator::WindowEstimate& e) {
   m.boxplots = with_boxplot ? static_cast<std::int32_t>(e.boxplot.size()) : 0;
   if (with_boxplot) {
     for (const estimator::BoxplotStatistics& box : e.boxplot) {
-      m.q1.push_back(box.q1);
-      m.median.push_back(box.median);
-      m.q3.push_back(box.q3);
-      m.whisker_low.push_back(box.whisker_low);
-      m.whisker_high.push_back(box.whisker_high);
+      for (const BoxColumn& column : kBoxColumns) (m.*column.values).push_back(box.*column.value);
       m.outliers.push_back(box.outliers);
       m.boxplot_count.push_back(box.count);
     }
   }
-  send(m.window_end_us, estimate_channel_, m);
+  send(m.window_end_us, estimate_channels_.front(), m);
 }
 
 void Publisher::late(const estimator::WindowEstimate& e) {
   if (!sink_) return;
   fill_values(e);
-  const std::string& channel =
-      e.window == 0 ? estimate_channel_ : other_channels_[static_cast<std::size_t>(e.window - 1)];
-  send(estimate_.window_end_us, channel + kLate, estimate_);
+  send(estimate_.window_end_us, estimate_channels_[static_cast<std::size_t>(e.window)] + kLate,
+       estimate_);
 }
 
 void Publisher::event(const event_t& event) {
-  send(event.time_us, event_channel_, event);
+  send(event.time_us, config_.lcm.prefix + "EVENT", event);
 }
 
 void Publisher::watch(std::int64_t time_us, const estimator::Watch& watch) {
   if (!sink_) return;
-  framewatch::watch_t& m = watch_;
+  watch_t m{};
   const auto count = static_cast<std::size_t>(watch.parameters());
   const estimator::Baseline none(count);
   const estimator::Baseline& usual = watch.baseline() != nullptr ? *watch.baseline() : none;
@@ -173,7 +152,7 @@ void Publisher::watch(std::int64_t time_us, const estimator::Watch& watch) {
   m.quiet_std_error = quiet.std_error;
   for (auto* slopes :
        {&m.per_degc, &m.per_degc_std_error, &m.per_log_amplitude, &m.per_log_amplitude_std_error})
-    slopes->assign(count, std::numeric_limits<double>::quiet_NaN());
+    slopes->assign(count, estimator::kNaN);
   for (std::size_t p = 0; p < count; ++p) {
     m.watched[p] = watch.watched(p) ? 1 : 0;
     if (!quiet.knows(p)) continue;
@@ -188,7 +167,7 @@ void Publisher::watch(std::int64_t time_us, const estimator::Watch& watch) {
       m.per_log_amplitude_std_error[p] = slope.std_error;
     }
   }
-  send(time_us, watch_channel_, m);
+  send(time_us, config_.lcm.prefix + "WATCH", m);
 }
 
 void Publisher::model(const estimator::ModelFit& fit) {
@@ -205,18 +184,15 @@ void Publisher::model(const estimator::ModelFit& fit) {
   m.error = fit.error;
   m.word.clear();
   for (const estimator::FitWord word : fit.word) m.word.push_back(static_cast<std::int32_t>(word));
-  send(m.window_end_us, model_channel_, m);
+  send(m.window_end_us, config_.lcm.prefix + "MODEL_FIT", m);
 }
 
 void Publisher::gap(const estimator::GapWindow& window) {
-  framewatch::gap_t& m = gap_;
+  gap_t m{};
   m.window_start_us = to_microseconds(window.start);
   m.window_end_us = to_microseconds(window.end);
   m.overall_nrmse = window.nrmse;
   m.noise_floor = window.floor;
-  m.name.clear();
-  m.nrmse.clear();
-  m.floor.clear();
   const std::vector<estimator::SensorAxis>& axes = config_.pipeline.axes;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     if (axes[a].story == 0) continue;
@@ -225,39 +201,15 @@ void Publisher::gap(const estimator::GapWindow& window) {
     m.floor.push_back(window.axis_floor[a]);
   }
   m.channels = static_cast<std::int32_t>(m.name.size());
-  send(m.window_end_us, gap_channel_, m);
+  send(m.window_end_us, config_.lcm.prefix + "GAP", m);
 }
 
-void Publisher::status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live) {
-  framewatch::status_t& m = status_;
-  m.time_us = time_us;
+void Publisher::status(status_t m) {
   m.config_sha256 = config_.sha256;
   m.version = FRAMEWATCH_VERSION;
-  m.windows = counts.windows;
-  m.sample_sets = counts.sample_sets;
-  m.gaps = counts.gaps;
-  m.rejected_messages = counts.rejected_messages;
-  m.queue_high_water = live.queue_high_water;
-  m.queue_dropped = live.queue_dropped;
-  m.latency_s = live.latency_s;
-  m.channels = static_cast<std::int32_t>(counts.axes.size());
-  m.name.clear();
-  for (auto* column :
-       {&m.received, &m.lost, &m.late, &m.repaired, &m.rejected, &m.stuck, &m.clipped})
-    column->clear();
-  m.noise_mps2_per_rthz.clear();
-  for (std::size_t i = 0; i < counts.axes.size(); ++i) {
-    m.name.push_back(config_.pipeline.axes[i].name);
-    m.received.push_back(counts.axes[i].received);
-    m.lost.push_back(counts.axes[i].lost);
-    m.late.push_back(counts.axes[i].late);
-    m.repaired.push_back(counts.axes[i].repaired);
-    m.rejected.push_back(counts.axes[i].rejected);
-    m.stuck.push_back(counts.axes[i].stuck);
-    m.clipped.push_back(counts.axes[i].clipped);
-    m.noise_mps2_per_rthz.push_back(counts.axes[i].noise_density);
-  }
-  send(time_us, status_channel_, m);
+  m.name = axis_names(config_);
+  m.channels = static_cast<std::int32_t>(m.name.size());
+  send(m.time_us, config_.lcm.prefix + "STATUS", m);
 }
 
 }  // namespace framewatch::daemon

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,17 +37,6 @@ struct LiveState {
   double latency_s = 0;
 };
 
-/// Counters of one axis for the status message.
-struct AxisStatus {
-  std::int64_t received = 0, lost = 0, late = 0, repaired = 0, rejected = 0, stuck = 0, clipped = 0;
-  double noise_density = std::numeric_limits<double>::quiet_NaN();  ///< m/s^2/sqrt(Hz)
-};
-
-struct StatusCounts {
-  std::int64_t windows = 0, sample_sets = 0, gaps = 0, rejected_messages = 0;
-  std::vector<AxisStatus> axes;  ///< in the order of the configured axes
-};
-
 /// Turns results of the estimator into the messages of lcmtypes/ and sends them. Uses no clock: the
 /// same estimates give the same bytes.
 class Publisher {
@@ -56,7 +44,6 @@ class Publisher {
   /// `config` must outlive this. Without a sink nothing is encoded.
   Publisher(const Config& config, MessageSink sink);
 
-  /// Publishes the parameter table.
   void parameters(std::int64_t time_us, const estimator::Pipeline& pipeline);
   /// Publishes an estimate of the main window, every LcmSettings::boxplot_every-th one with boxplot
   /// statistics.
@@ -66,16 +53,14 @@ class Publisher {
   /// Publishes a late estimate (WindowEstimate::late) on its window's channel plus _LATE, so that
   /// readers of the main channel get windows in order.
   void late(const estimator::WindowEstimate& estimate);
-  /// Publishes an event.
   void event(const event_t& event);
   /// Publishes the baselines with which changes are compared.
   void watch(std::int64_t time_us, const estimator::Watch& watch);
-  /// Publishes a window of the gap monitor.
   void gap(const estimator::GapWindow& window);
-  /// Publishes how well the model fits.
   void model(const estimator::ModelFit& fit);
-  /// Publishes the status; `time_us` is sensor time.
-  void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
+  /// Publishes the counters of `status`, which are by axis. Adds the names of the axes, the
+  /// configuration and the version.
+  void status(status_t status);
 
  private:
   void fill_values(const estimator::WindowEstimate& estimate);
@@ -84,14 +69,8 @@ class Publisher {
 
   const Config& config_;
   MessageSink sink_;
-  std::string parameters_channel_, estimate_channel_, status_channel_, event_channel_, gap_channel_,
-      watch_channel_, model_channel_;
-  std::vector<std::string> other_channels_;
-  framewatch::parameter_table_t parameters_{};
+  const std::vector<std::string> estimate_channels_;  ///< by WindowEstimate::window
   framewatch::window_estimate_t estimate_{};
-  framewatch::status_t status_{};
-  framewatch::gap_t gap_{};
-  framewatch::watch_t watch_{};
   framewatch::model_fit_t model_{};
   std::vector<std::uint8_t> bytes_;
 };

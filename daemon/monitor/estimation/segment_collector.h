@@ -17,7 +17,6 @@ class SegmentCollector {
   /// `from_s` and `to_s` count from the first sample.
   SegmentCollector(const estimator::PipelineConfig& config, double from_s, double to_s);
 
-  /// Takes the next sample.
   void push(const estimator::AccelSample& sample);
   /// Ends the input: keeps the instants that are still open.
   void finish();

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/estimation/state_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -13,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
+#include "drivers/files/descriptor.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/partial_file.h"
 
@@ -21,6 +20,8 @@ namespace {
 
 struct Description {
   std::string_view name, without;
+  /// Sections of the configuration file and further SavedState::grounds on which the section
+  /// depends. It is refused when one of them has changed.
   std::vector<std::string> grounds;
 };
 
@@ -51,8 +52,7 @@ const std::array<Description, 10>& descriptions() {
 
 const Description* find(std::string_view name) {
   const auto& all = descriptions();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Description& d) { return d.name == name; });
+  const auto found = std::ranges::find(all, name, &Description::name);
   return found == all.end() ? nullptr : &*found;
 }
 
@@ -128,14 +128,16 @@ std::map<std::string, std::string> grounds_of(const Config& config) {
 
 /// Returns, for people, on what a section depends that differs in this configuration; empty if it
 /// fits.
-std::string other_grounds(const StateSection& section, const SavedState& state,
+std::string other_grounds(const std::string& section, const SavedState& state,
                           const std::map<std::string, std::string>& grounds) {
   const auto in = [](const std::map<std::string, std::string>& all, const std::string& name) {
     const auto found = all.find(name);
     return found == all.end() ? std::string() : found->second;
   };
   std::string out;
-  for (const std::string& name : grounds_of_section(section.name)) {
+  const Description* const description = find(section);
+  if (description == nullptr) return out;
+  for (const std::string& name : description->grounds) {
     if (in(state.grounds, name) == in(grounds, name)) continue;
     if (!out.empty()) out += ", ";
     out += name == "parameters"    ? "the identified parameters"
@@ -147,9 +149,9 @@ std::string other_grounds(const StateSection& section, const SavedState& state,
 
 /// A state file with its undamaged sections.
 struct ReadState {
-  std::string problem;
-  SavedState state;
-  std::vector<LostSection> lost;
+  std::string problem = {};
+  SavedState state = {};
+  std::vector<LostSection> lost = {};
 };
 
 ReadState read_state(const std::string& path) {
@@ -161,20 +163,18 @@ ReadState read_state(const std::string& path) {
   Head head;
   head.magic.clear();
   head.archive_identity(reader);
-  if (head.magic != kMagic) return {"is not a state of framewatch", {}, {}};
+  if (head.magic != kMagic) return {"is not a state of framewatch"};
   // Another version of the program may load it, so that an upgrade keeps the window.
   if (reader.good() && head.format != kFormat)
     return {fmt::format("was written by framewatch {} (format {}), this is {} (format {})",
-                        head.version, head.format, FRAMEWATCH_VERSION, kFormat),
-            {},
-            {}};
+                        head.version, head.format, FRAMEWATCH_VERSION, kFormat)};
   head.archive_rest(reader);
   estimator::StateWriter again;
   if (reader.good()) head.archive_identity(again), head.archive_rest(again);
   const std::vector<std::uint8_t>& own = again.bytes();
   std::size_t at = own.size();
   if (!reader.good() || text->substr(at, kDigestBytes) != digest_of(own))
-    return {"is damaged or cut off: the digest of its head does not match", {}, {}};
+    return {"is damaged or cut off: the digest of its head does not match"};
   at += kDigestBytes;
   out.state.config_sha256 = head.config_sha256;
   out.state.events_before = head.events_before;
@@ -199,32 +199,40 @@ void lose(ReadState& read, const std::string& name, const std::string& why) {
   read.lost.push_back({name, why});
 }
 
-bool has(const ReadState& read, const std::string& name) {
+/// Returns the undamaged section of this name, or nullptr.
+const StateSection* section_of(const ReadState& read, const std::string& name) {
   const auto& sections = read.state.sections;
-  return std::any_of(sections.begin(), sections.end(),
-                     [&](const StateSection& s) { return s.name == name; });
+  const auto found = std::ranges::find(sections, name, &StateSection::name);
+  return found == sections.end() ? nullptr : &*found;
 }
 
 /// Keeps the sections that depend on unchanged settings and for which no other section is missing.
 void leave_what_fits(ReadState& read, const Config& config, Estimation& estimation) {
   const std::map<std::string, std::string> grounds = grounds_of(config);
   for (const std::string& name : estimation.section_names()) {
-    const auto found = std::find_if(read.state.sections.begin(), read.state.sections.end(),
-                                    [&](const StateSection& s) { return s.name == name; });
-    if (found != read.state.sections.end()) {
-      if (const std::string other = other_grounds(*found, read.state, grounds); !other.empty())
+    if (section_of(read, name) != nullptr) {
+      if (const std::string other = other_grounds(name, read.state, grounds); !other.empty())
         lose(read, name, "was written under another configuration: " + other);
-    } else if (std::none_of(read.lost.begin(), read.lost.end(),
-                            [&](const LostSection& l) { return l.name == name; })) {
+    } else if (std::ranges::find(read.lost, name, &LostSection::name) == read.lost.end()) {
       read.lost.push_back({name, "is not in the file"});
     }
   }
-  if (has(read, "watch") && !has(read, "baseline"))
+  if (section_of(read, "watch") != nullptr && section_of(read, "baseline") == nullptr)
     lose(read, "watch", "needs the section baseline");
 }
 
-/// Returns the head and its digest.
-std::vector<std::uint8_t> head_bytes(const SavedState& state) {
+}  // namespace
+
+std::string_view without_section(std::string_view name) {
+  const Description* found = find(name);
+  return found == nullptr ? std::string_view{} : found->without;
+}
+
+SavedState saved_state(const Config& config, Estimation& estimation, std::int64_t events_before) {
+  return {config.sha256, events_before, grounds_of(config), estimation.save()};
+}
+
+std::vector<std::uint8_t> state_bytes(const SavedState& state) {
   Head head;
   head.config_sha256 = state.config_sha256;
   head.events_before = state.events_before;
@@ -237,39 +245,6 @@ std::vector<std::uint8_t> head_bytes(const SavedState& state) {
   std::vector<std::uint8_t> bytes = writer.bytes();
   const std::string digest = digest_of(bytes);
   bytes.insert(bytes.end(), digest.begin(), digest.end());
-  return bytes;
-}
-
-bool write_all(int descriptor, const std::vector<std::uint8_t>& bytes) {
-  std::size_t at = 0;
-  while (at < bytes.size()) {
-    const ssize_t written = ::write(descriptor, bytes.data() + at, bytes.size() - at);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    at += static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
-}  // namespace
-
-std::string_view without_section(std::string_view name) {
-  const Description* found = find(name);
-  return found == nullptr ? std::string_view{} : found->without;
-}
-
-const std::vector<std::string>& grounds_of_section(std::string_view name) {
-  static const std::vector<std::string> none;
-  const Description* found = find(name);
-  return found == nullptr ? none : found->grounds;
-}
-
-SavedState saved_state(const Config& config, Estimation& estimation, std::int64_t events_before) {
-  return {config.sha256, events_before, grounds_of(config), estimation.save()};
-}
-
-std::vector<std::uint8_t> state_bytes(const SavedState& state) {
-  std::vector<std::uint8_t> bytes = head_bytes(state);
   for (const StateSection& s : state.sections)
     bytes.insert(bytes.end(), s.bytes.begin(), s.bytes.end());
   return bytes;
@@ -278,9 +253,9 @@ std::vector<std::uint8_t> state_bytes(const SavedState& state) {
 std::string write_state(const std::string& path, const SavedState& state) {
   drivers::PartialFile file;
   if (!file.open(path)) return file.error();
-  bool good = write_all(file.descriptor(), head_bytes(state));
-  for (const StateSection& s : state.sections) good = good && write_all(file.descriptor(), s.bytes);
-  if (!good) return std::strerror(errno);
+  const std::vector<std::uint8_t> bytes = state_bytes(state);
+  if (!drivers::write_fully(file.descriptor(), bytes.data(), bytes.size()))
+    return std::strerror(errno);
   return file.commit() ? "" : file.error();
 }
 
@@ -288,27 +263,25 @@ LoadedState load_state(const std::string& path, const Config& config, Estimation
                        bool& touched) {
   touched = false;
   ReadState read = read_state(path);
-  if (!read.problem.empty()) return {read.problem, 0, {}};
+  if (!read.problem.empty()) return {read.problem};
   if (read.state.config_sha256 != config.sha256)
     return {fmt::format("belongs to another configuration (sha256 {}...), {} has {}...",
                         read.state.config_sha256.substr(0, 12), config.path,
-                        config.sha256.substr(0, 12)),
-            0,
-            {}};
+                        config.sha256.substr(0, 12))};
   leave_what_fits(read, config, estimation);
   if (!read.lost.empty())
-    return {fmt::format("section {} {}", read.lost[0].name, read.lost[0].why), 0, {}};
+    return {fmt::format("section {} {}", read.lost[0].name, read.lost[0].why)};
   touched = true;
   if (const std::string spoilt = estimation.load(read.state.sections); !spoilt.empty())
-    return {fmt::format("section {} {}", spoilt, kUnlike), 0, {}};
+    return {fmt::format("section {} {}", spoilt, kUnlike)};
   estimation.went_without({});
-  return {"", read.state.events_before, {}};
+  return {"", read.state.events_before};
 }
 
 LoadedState load_what_fits(const std::string& path, const Config& config, Estimation& estimation,
                            const std::function<Estimation&()>& anew) {
   ReadState read = read_state(path);
-  if (!read.problem.empty()) return {read.problem, 0, {}};
+  if (!read.problem.empty()) return {read.problem};
   Estimation* into = &estimation;
   leave_what_fits(read, config, *into);
   for (;;) {

@@ -23,11 +23,6 @@ struct LostSection {
 /// `name` is not a section.
 std::string_view without_section(std::string_view name);
 
-/// Returns the sections of the configuration file, and the further properties in
-/// SavedState::grounds, on which a section of the state depends. A section is refused when one of
-/// them has changed.
-const std::vector<std::string>& grounds_of_section(std::string_view name);
-
 /// The state of an estimation in the form of a file (docs/formats.md).
 struct SavedState {
   std::string config_sha256;
@@ -36,7 +31,6 @@ struct SavedState {
   std::vector<StateSection> sections;
 };
 
-/// Returns the state of an estimation with this configuration.
 SavedState saved_state(const Config& config, Estimation& estimation, std::int64_t events_before);
 
 /// Returns the bytes of a state file: head with the digest of every section, digest of the head,
@@ -50,7 +44,7 @@ std::string write_state(const std::string& path, const SavedState& state);
 struct LoadedState {
   std::string problem;  ///< why nothing was loaded; empty when something was
   std::int64_t events_before = 0;
-  std::vector<LostSection> lost;  ///< sections that were not loaded
+  std::vector<LostSection> lost = {};  ///< sections that were not loaded
 };
 /// Loads a whole state file into an estimation of the same configuration, or nothing. A problem of
 /// the file itself leaves the estimation unchanged; `touched` is set if it must not be used any

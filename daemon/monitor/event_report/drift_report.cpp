@@ -146,8 +146,6 @@ std::string in_table(double probability) {
                               : fmt::format("{:.0f} %", 100 * probability);
 }
 
-constexpr const char* kStates[] = {"slight", "moderate", "extensive", "complete"};
-
 Json story_json(const DriftReport& r, std::size_t i, const Config& config) {
   const estimator::StoryDrift& d = r.drifts[i];
   Json out{{"story", d.story},
@@ -163,7 +161,8 @@ Json story_json(const DriftReport& r, std::size_t i, const Config& config) {
            {"gap_at_peak", d.interrupted_at_peak()}};
   if (!r.placard) return out;
   for (std::size_t state = 0; state < estimator::kDamageStates; ++state)
-    out["probability_or_worse"][kStates[state]] = json_value(r.damage[i][state]);
+    out["probability_or_worse"][state_word(static_cast<estimator::DamageState>(state))] =
+        json_value(r.damage[i][state]);
   return out;
 }
 

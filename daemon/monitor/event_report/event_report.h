@@ -55,7 +55,6 @@ inline constexpr double kGreenShown_s = 600;
 /// Returns true if `event` is a green one that is to be cleared at `now_us`.
 bool green_and_past(const event_t& event, std::int64_t now_us);
 
-/// Returns the report as a page.
 std::string event_report_html(const EventReport& report, const Config& config);
 /// Returns the report as JSON, schema framewatch.event_report/1 (docs/formats.md).
 std::string event_report_json(const EventReport& report, const Config& config);

@@ -39,12 +39,6 @@ void remove_oldest(const std::string& directory, std::size_t most) {
     }
 }
 
-/// Two reports that end at the same time must be written one after the other.
-std::mutex& one_at_a_time() {
-  static std::mutex mutex;
-  return mutex;
-}
-
 void log_lost_report(const std::string& name, const std::string& why) {
   log(LogLevel::error, fmt::format("{}: cannot write the report: {}", name, why));
 }
@@ -106,7 +100,8 @@ const std::optional<EventReportSummary>& NewestEventReport::poll() {
 
 std::string write_event_report(const EventReport& report, const Config& config,
                                const std::string& directory) {
-  const std::lock_guard lock(one_at_a_time());
+  static std::mutex one_at_a_time;  // two motions may end at once
+  const std::lock_guard lock(one_at_a_time);
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) return directory + ": " + error.message();
@@ -117,10 +112,6 @@ std::string write_event_report(const EventReport& report, const Config& config,
   if (problem.empty())
     remove_oldest(directory, static_cast<std::size_t>(config.event_report->most_reports));
   return problem;
-}
-
-EventReportFiles::~EventReportFiles() {
-  for (std::future<void>& one : writing_) one.wait();
 }
 
 void EventReportFiles::write(const EventReport& report, const Config& config) {

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <future>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,9 +39,8 @@ class NewestEventReport {
   /// Reads the newest report if it is newer than the last one read. Returns the newest report, or
   /// nullopt for an empty folder.
   const std::optional<EventReportSummary>& poll();
-  const std::optional<EventReportSummary>& newest() const {
-    return newest_;
-  }  ///< as of the last poll()
+  /// Returns the newest report as of the last poll().
+  const std::optional<EventReportSummary>& newest() const { return newest_; }
 
  private:
   std::string folder_, name_;
@@ -61,16 +59,11 @@ class EventReportFiles {
  public:
   static constexpr std::size_t kMax = 4;
 
-  EventReportFiles() = default;
-  ~EventReportFiles();  ///< waits until all reports are written
-  EventReportFiles(const EventReportFiles&) = delete;
-  EventReportFiles& operator=(const EventReportFiles&) = delete;
-
   /// Starts to write a report, with a copy of `config`.
   void write(const EventReport& report, const Config& config);
 
  private:
-  std::vector<std::future<void>> writing_;
+  std::vector<std::future<void>> writing_;  ///< of std::async: their destructors wait
 };
 
 }  // namespace framewatch::daemon

@@ -22,27 +22,21 @@ std::string number(double value, const char* format) {
 }
 
 const char* advice(EventColor color) {
-  switch (color) {
-    case EventColor::red:
-      return "Have a structural engineer look at the building before it is used as before.";
-    case EventColor::yellow:
-      return "Have a structural engineer read this report.";
-    case EventColor::green:
-      break;
-  }
-  return "Nothing needs to be done.";
+  constexpr const char* kAdvice[] = {
+      "Nothing needs to be done.", "Have a structural engineer read this report.",
+      "Have a structural engineer look at the building before it is used as before."};
+  return kAdvice[static_cast<std::size_t>(color)];
 }
 
 std::string verdict_text(const EventReport& r, const Config& config, const EventVerdict& verdict,
                          const DriftReport& drifts) {
-  std::string word = color_word(verdict.color);
-  word[0] = static_cast<char>(word[0] - 'a' + 'A');
   std::string out;
   const std::vector<std::string> unheard = unheard_sentences(r.shaking);
   for (const std::string& one : unheard)
     if (one != verdict.reasons.front())
       out += "<p class=\"unheard\"><strong>" + html_text(one) + ".</strong></p>\n";
-  out += "<p class=\"verdict\">" + word + ": " + html_text(verdict.reasons.front()) + ".</p>\n";
+  out += "<p class=\"verdict\">" + capitalized(color_word(verdict.color)) + ": " +
+         html_text(verdict.reasons.front()) + ".</p>\n";
   std::string rest;
   for (std::size_t i = 1; i < verdict.reasons.size(); ++i)
     if (std::find(unheard.begin(), unheard.end(), verdict.reasons[i]) == unheard.end())

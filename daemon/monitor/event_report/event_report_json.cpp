@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -19,17 +18,8 @@ Json mean_json(const estimator::WindowMean& m) {
 }
 
 const char* before_word(estimator::BeforeFrom from) {
-  switch (from) {
-    case estimator::BeforeFrom::baseline:
-      return "baseline";
-    case estimator::BeforeFrom::windows_before:
-      return "windows_before";
-    case estimator::BeforeFrom::first_windows:
-      return "first_windows";
-    case estimator::BeforeFrom::none:
-      break;
-  }
-  return "none";
+  constexpr const char* kWords[] = {"none", "baseline", "windows_before", "first_windows"};
+  return kWords[static_cast<std::size_t>(from)];
 }
 
 /// Returns the times without samples. The peaks of the report are those of the remaining time.

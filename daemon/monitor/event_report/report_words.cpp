@@ -102,14 +102,8 @@ std::string capitalized(std::string text) {
 }
 
 std::string placard_words(const estimator::PlacardChoice& choice) {
-  switch (choice.placard) {
-    case estimator::Placard::unsafe:
-      return "unsafe";
-    case estimator::Placard::inspected:
-      return "inspected";
-    case estimator::Placard::restricted:
-      break;
-  }
+  if (choice.placard == estimator::Placard::unsafe) return "unsafe";
+  if (choice.placard == estimator::Placard::inspected) return "inspected";
   const bool by_damage = choice.reason == estimator::PlacardReason::damage ||
                          choice.reason == estimator::PlacardReason::no_damage;
   return by_damage ? "restricted use" : "restricted use (not judged)";
@@ -152,15 +146,8 @@ std::string unheard_words(const estimator::Shaking& shaking) {
 }
 
 const char* unheard_why(UnheardWhy why) {
-  switch (why) {
-    case UnheardWhy::restart:
-      return "restart";
-    case UnheardWhy::restart_no_raw:
-      return "restart_without_raw_samples";
-    case UnheardWhy::no_samples:
-      break;
-  }
-  return "no_samples";
+  constexpr const char* kWords[] = {"no_samples", "restart", "restart_without_raw_samples"};
+  return kWords[static_cast<std::size_t>(why)];
 }
 
 }  // namespace framewatch::daemon

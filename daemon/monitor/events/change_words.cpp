@@ -70,21 +70,14 @@ std::string with_error(double loss, double std_error) {
 }
 
 const char* reason_words(RecoveryReason reason) {
-  switch (reason) {
-    case RecoveryReason::few_windows:
-      return "too few windows have come";
-    case RecoveryReason::short_time:
-      return "too little time has passed";
-    case RecoveryReason::inexact:
-      return "the windows scatter too much";
-    case RecoveryReason::amplitude:
-      return "how it follows the amplitude of the motion is not known well enough";
-    case RecoveryReason::baseline:
-      return "its stiffness before is not known well enough";
-    case RecoveryReason::none:
-      break;
-  }
-  return "";
+  constexpr const char* kWords[] = {
+      "",
+      "too few windows have come",
+      "too little time has passed",
+      "the windows scatter too much",
+      "how it follows the amplitude of the motion is not known well enough",
+      "its stiffness before is not known well enough"};
+  return kWords[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace

@@ -70,11 +70,4 @@ void add_all_acknowledged(acknowledged_t& message, const Acknowledgement& by) {
   add_acknowledged(message, all, by);
 }
 
-acknowledged_t acknowledged_message(const event_t& event, const Acknowledgement& by) {
-  acknowledged_t out{};
-  out.time_us = by.time_us;
-  add_acknowledged(out, event, by);
-  return out;
-}
-
 }  // namespace framewatch::daemon

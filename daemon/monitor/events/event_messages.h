@@ -60,13 +60,9 @@ acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
 /// the command itself states: "alice", "alice (says: Bob)".
 std::string who_text(const std::string& user, const std::string& says);
 
-/// Appends one acknowledged event to the message.
 void add_acknowledged(acknowledged_t& message, const event_t& event, const Acknowledgement& by);
 
 /// Appends the entry that says that all events were acknowledged.
 void add_all_acknowledged(acknowledged_t& message, const Acknowledgement& by);
-
-/// Returns a message that says that one event was acknowledged.
-acknowledged_t acknowledged_message(const event_t& event, const Acknowledgement& by);
 
 }  // namespace framewatch::daemon

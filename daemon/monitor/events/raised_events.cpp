@@ -3,13 +3,10 @@
 
 #include <algorithm>
 
-#include "daemon/monitor/events/event_messages.h"
-
 namespace framewatch::daemon {
 
 void RaisedEvents::note(const event_t& e) {
-  const auto same =
-      std::find_if(events_.begin(), events_.end(), [&](const event_t& r) { return r.id == e.id; });
+  const auto same = std::ranges::find(events_, e.id, &event_t::id);
   if (e.state == event_state::cleared) {
     if (same != events_.end()) events_.erase(same);
     forget(e.id);

@@ -12,7 +12,6 @@
 
 namespace framewatch::daemon {
 
-/// Archives an event as part of a state.
 template <typename Archive>
 void archive_event(Archive& a, event_t& e) {
   a(e.time_us, e.since_us, e.id, e.state, e.severity, e.kind, e.place, e.value, e.std_error, e.unit,

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/history_command.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <map>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -18,17 +14,12 @@
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/base/utc_time.h"
-#include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_overview.h"
-#include "daemon/monitor/history/history_request.h"
 #include "daemon/monitor/history/raw_export.h"
-#include "daemon/monitor/history/raw_history_reader.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "drivers/files/number_text.h"
-#include "drivers/files/standard_streams.h"
 #include "drivers/files/text_output.h"
-#include "drivers/lcm/count_block.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
@@ -59,6 +50,8 @@ constexpr Column kColumns[] = {
     {"outliers", [](const SummaryRow& r) { return static_cast<double>(r.outliers); }},
 };
 
+/// Writes summaries of one period as .csv or .csv.gz, one row per parameter and period
+/// (docs/history.md). Returns an empty string, or the problem; then no file remains.
 std::string write_csv(const std::string& path, std::int64_t period_s,
                       const std::vector<NamedSummaries>& summaries) {
   drivers::TextOutput out;
@@ -79,6 +72,7 @@ std::string write_csv(const std::string& path, std::int64_t period_s,
   return good && out.close() ? "" : fmt::format("{}: {}", path, out.error());
 }
 
+/// Does so as .mat, periods x parameters.
 std::string write_mat(const std::string& path, std::int64_t period_s,
                       const std::vector<NamedSummaries>& summaries) {
   std::map<std::int64_t, std::size_t> row_of;
@@ -113,132 +107,6 @@ std::string write_mat(const std::string& path, std::int64_t period_s,
   return problem.empty() ? "" : fmt::format("{}: {}", path, problem);
 }
 
-/// Writes summaries of one period to `path`: .csv or .csv.gz with one row per parameter and period,
-/// or .mat, periods x parameters (docs/history.md). Returns an empty string, or the problem; then
-/// no file remains.
-std::string write_summaries(const std::string& path, std::int64_t period_s,
-                            const std::vector<NamedSummaries>& summaries) {
-  return path.ends_with(".mat") ? write_mat(path, period_s, summaries)
-                                : write_csv(path, period_s, summaries);
-}
-
-constexpr std::int64_t kProgressSamples = 1 << 14;
-
-class RawJob {
- public:
-  RawJob(const HistoryArguments& arguments, const HistoryRequest& request,
-         std::vector<std::string>& problems)
-      : a_(arguments), request_(request), problems_(problems) {}
-
-  void run() {
-    (*progress_)("looking for raw samples", 0);
-    const std::vector<RawLog> logs =
-        raw_logs_between(request_.directory, request_.from_us, request_.to_us);
-    // Reads everything once first: an export has all of its channels from the start.
-    std::vector<std::string> names;
-    double rate_hz = 0, resolution_mps2 = 0;
-    std::int64_t samples = 0;
-    std::vector<std::string> notes;
-    std::string why;
-    const auto fails = [&] {
-      problem(why);
-      return;
-    };
-    if (!read_raw_history(logs, request_.from_us, request_.to_us,
-                          {[&](const auto& now, double rate) {
-                             for (const std::string& name : now)
-                               if (std::find(names.begin(), names.end(), name) == names.end())
-                                 names.push_back(name);
-                             if (rate_hz == 0) rate_hz = rate;
-                           },
-                           [&](const RawCount& c) {
-                             ++samples;
-                             if (resolution_mps2 == 0) resolution_mps2 = c.resolution_mps2;
-                           }},
-                          notes, why))
-      return fails();
-    check_patterns("--channel", a_.channels, names, problems_);
-    if (samples == 0) problem("there are no raw samples in that time");
-    if (!problems_.empty()) return;
-    std::vector<RawChannel> channels;
-    for (std::size_t i = 0; i < names.size(); ++i)
-      if (is_chosen(a_.channels, names[i])) channels.push_back(placed(names[i], i));
-    std::erase_if(names, [&](const std::string& name) { return !is_chosen(a_.channels, name); });
-    const auto out =
-        raw_export(a_.raw, channels, rate_hz, resolution_mps2, {a_.network, a_.station}, why);
-    if (!out) return fails();
-    expected_ = samples;
-    progress_->part_begins();
-    write_raw(logs, names, *out);
-  }
-
- private:
-  void problem(std::string message) { problems_.push_back(std::move(message)); }
-
-  /// Returns the LCM address of a channel: from the configuration, otherwise a separate node.
-  RawChannel placed(const std::string& name, std::size_t index) const {
-    if (request_.config) {
-      const auto all = addresses(request_.config->sources);
-      for (std::size_t i = 0; i < all.size(); ++i)
-        if (request_.config->pipeline.axes[i].name == name) return {name, all[i], i};
-    }
-    return {name, {"ACCEL", static_cast<std::int32_t>(index), 0}, index};
-  }
-
-  void write_raw(const std::vector<RawLog>& logs, const std::vector<std::string>& names,
-                 RawExport& out) {
-    std::vector<std::optional<std::size_t>> place;  // by channel of the log
-    std::int64_t seen = 0, samples = 0, beyond = 0;
-    bool good = true;
-    std::vector<std::string> notes;
-    std::string why;
-    const RawVisitor visitor{
-        [&](const std::vector<std::string>& now, double) {
-          place.assign(now.size(), std::nullopt);
-          for (std::size_t i = 0; i < now.size(); ++i)
-            if (const auto at = std::find(names.begin(), names.end(), now[i]); at != names.end())
-              place[i] = static_cast<std::size_t>(at - names.begin());
-        },
-        [&](const RawCount& c) {
-          if (++seen % kProgressSamples == 0)
-            (*progress_)("writing " + a_.raw,
-                         static_cast<double>(seen) / static_cast<double>(expected_));
-          if (!good || !place[c.channel]) return;
-          ++samples;
-          beyond += c.count == drivers::kMaxCount || c.count == -drivers::kMaxCount;
-          const double accel = c.count == drivers::kNoCount
-                                   ? std::numeric_limits<double>::quiet_NaN()
-                                   : c.count * c.resolution_mps2;
-          good = out.put(*place[c.channel], c.time_us, accel);
-        },
-        [&](const drivers::LogEvent& event) { good = good && out.message(event); }};
-    const bool read = read_raw_history(logs, request_.from_us, request_.to_us, visitor, notes, why);
-    if (!read || !good || !out.close()) {
-      problem(read ? fmt::format("{}: {}", a_.raw, out.error()) : why);
-      return;
-    }
-    progress_.reset();
-    std::FILE* const where = a_.raw == drivers::kStandardOutput ? stderr : stdout;
-    fmt::print(where, "{}: {} samples of {} channels\n", a_.raw, samples, names.size());
-    if (beyond > 0) fmt::print(where, "{} of them exceed the stored range\n", beyond);
-    for (const std::string& note : notes) fmt::print(where, "{}\n", printable_lines(note));
-    for (const std::string& note : out.notes()) fmt::print(where, "{}\n", printable_lines(note));
-  }
-
-  const HistoryArguments& a_;
-  const HistoryRequest& request_;
-  std::vector<std::string>& problems_;
-  std::int64_t expected_ = 0;  ///< total of all channels
-  std::optional<ProgressLine> progress_{std::in_place, "history", false};
-};
-
-/// Writes the requested raw samples to the file HistoryArguments::raw and prints notes about it.
-/// After a problem no file remains.
-void export_raw_history(const HistoryArguments& arguments, const HistoryRequest& request,
-                        std::vector<std::string>& problems) {
-  RawJob(arguments, request, problems).run();
-}
-
 constexpr std::int64_t kMaxEvents = 1'000'000;
 
 void print_events(const HistoryRequest& r, SummaryQuery& summaries) {
@@ -268,7 +136,8 @@ void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQ
   if (!a.out.empty()) {
     ProgressLine progress("history", false);
     progress("writing " + a.out, 0);
-    if (const std::string why = write_summaries(a.out, r.period_s, found); !why.empty())
+    const auto write = a.out.ends_with(".mat") ? &write_mat : &write_csv;
+    if (const std::string why = write(a.out, r.period_s, found); !why.empty())
       problems.push_back(why);
     return;
   }

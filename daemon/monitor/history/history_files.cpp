@@ -2,12 +2,11 @@
 #include "daemon/monitor/history/history_files.h"
 
 #include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include <fmt/core.h>
@@ -80,9 +79,7 @@ std::vector<RawLog> raw_logs(const std::string& folder) {
   std::error_code none;
   for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none))
     if (const auto log = raw_log(*at)) out.push_back(*log);
-  std::sort(out.begin(), out.end(), [](const RawLog& a, const RawLog& b) {
-    return std::pair(a.start_us, a.path) < std::pair(b.start_us, b.path);
-  });
+  std::ranges::sort(out, {}, [](const RawLog& log) { return std::tie(log.start_us, log.path); });
   const auto there = [&](const std::string& path) {
     return std::any_of(out.begin(), out.end(), [&](const RawLog& log) { return log.path == path; });
   };

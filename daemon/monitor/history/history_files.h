@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace framewatch::daemon {
+
+/// Later than any time in a history; -kEver_us is earlier than any.
+inline constexpr std::int64_t kEver_us = INT64_MAX / 4;
 
 /// Paths in a history's directory.
 std::string raw_folder(const std::string& directory);    ///< raw logs

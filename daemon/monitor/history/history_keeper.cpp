@@ -11,9 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 
@@ -25,7 +23,7 @@
 #include "daemon/base/sqlite_file.h"
 #include "daemon/monitor/history/history_files.h"
 #include "drivers/files/caught.h"
-#include "drivers/files/durable_file.h"
+#include "drivers/files/descriptor.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/packed_file.h"
 #include "drivers/files/partial_file.h"
@@ -52,11 +50,8 @@ std::int64_t end_of_events(const std::string& path) {
 }
 
 bool cut(const std::string& path, std::int64_t bytes) {
-  const int file = drivers::open_own_file(path, O_WRONLY);
-  if (file < 0) return false;
-  const bool done = ::ftruncate(file, bytes) == 0 && ::fsync(file) == 0;
-  ::close(file);
-  return done;
+  const drivers::Descriptor file(drivers::open_own_file(path, O_WRONLY));
+  return file.get() >= 0 && ::ftruncate(file.get(), bytes) == 0 && ::fsync(file.get()) == 0;
 }
 
 void repair(const std::string& partial) {

@@ -55,10 +55,7 @@ class HistoryKeeper {
   explicit HistoryKeeper(HistorySettings settings);
   /// Closes the logs that wait for it.
   ~HistoryKeeper();
-  HistoryKeeper(const HistoryKeeper&) = delete;
-  HistoryKeeper& operator=(const HistoryKeeper&) = delete;
 
-  /// Takes a log to close.
   void retire(std::unique_ptr<drivers::DurableFile> log);
   /// Sets the newest sensor time, from which the age of a log is counted.
   void newest(std::int64_t time_us);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include <framewatch/event_t.hpp>
@@ -20,7 +21,6 @@ namespace {
 
 constexpr std::size_t kMaxParameters = 24, kMaxChannels = 6;
 constexpr std::int64_t kEventsTold = 5;
-constexpr std::int64_t kEver_us = INT64_MAX / 4;
 
 struct RawTotals {
   std::int64_t bytes = 0, logs = 0, open = 0, first_us = 0, last_us = 0;
@@ -43,11 +43,6 @@ std::string raw_line(const char* what, const RawTotals& raw) {
                      utc_text(raw.first_us), utc_text(raw.last_us), raw.logs,
                      raw.logs == 1 ? "log" : "logs", size_text(raw.bytes),
                      raw.open > 0 ? ", one is being written" : "");
-}
-
-/// Returns the longest period.
-SummaryPeriods newest_of(const std::vector<SummaryPeriods>& periods) {
-  return periods.empty() ? SummaryPeriods{} : periods.back();
 }
 
 std::string parameter_lines(SummaryQuery& summaries, const SummaryPeriods& period) {
@@ -84,8 +79,7 @@ std::string channel_lines(SummaryQuery& summaries) {
   std::erase_if(channels, [](const ChannelTotals& c) {
     return c.lost + c.late + c.rejected + c.stuck + c.clipped == 0;
   });
-  std::stable_sort(channels.begin(), channels.end(),
-                   [](const auto& a, const auto& b) { return a.lost > b.lost; });
+  std::ranges::stable_sort(channels, std::greater<>(), &ChannelTotals::lost);
   for (std::size_t c = 0; c < std::min(channels.size(), kMaxChannels); ++c)
     out += fmt::format("  {:<12} {} lost, {} late, {} rejected, {} stuck, {} clipped\n",
                        channels[c].name, channels[c].lost, channels[c].late, channels[c].rejected,
@@ -124,7 +118,7 @@ std::string history_overview(const std::string& directory, SummaryQuery& summari
     out += fmt::format("{:<12}{} periods of {} s, {} to {}\n", "summaries", p.count, p.period_s,
                        utc_text(p.first_us), utc_text(p.last_us + kSecond_us * p.period_s));
   if (periods.empty()) out += fmt::format("{:<12}none\n", "summaries");
-  out += parameter_lines(summaries, newest_of(periods));
+  if (!periods.empty()) out += parameter_lines(summaries, periods.back());
   out += channel_lines(summaries);
   const std::vector<event_t> events = summaries.events(-kEver_us, kEver_us, kEventsTold);
   if (!events.empty()) out += "\nLast events (--events for all):\n";

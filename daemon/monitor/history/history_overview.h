@@ -14,10 +14,8 @@ std::string history_overview(const std::string& directory, SummaryQuery& summari
 /// Returns the overview as JSON, schema `framewatch.history/1`.
 std::string history_json(const std::string& directory, SummaryQuery& summaries);
 
-/// Returns the event as one line.
 std::string event_line(const event_t& event);
 
-/// Returns the acknowledgement as one line.
 std::string acknowledgement_line(const StoredAcknowledgement& acknowledgement);
 
 /// Returns a size such as "4.2 MB".

@@ -17,7 +17,6 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/keys/suggest.h"
 #include "daemon/monitor/history/history_files.h"
-#include "daemon/monitor/history/raw_export.h"
 #include "drivers/files/standard_streams.h"
 
 namespace framewatch::daemon {
@@ -42,6 +41,14 @@ std::optional<std::int64_t> read_duration(const std::string& text) {
   return std::llround(1e6 * value * seconds);
 }
 
+/// Returns the rule that the name of an export breaks; empty if the name is valid.
+std::string problem_of_raw_name(const std::string& path) {
+  if (path == drivers::kStandardOutput) return {};
+  for (const char* ending : {".lcmlog", ".csv", ".csv.gz", ".mseed"})
+    if (path.ends_with(ending)) return {};
+  return path + ": the name for raw samples must end in .lcmlog, .csv, .csv.gz or .mseed";
+}
+
 class RequestReader {
  public:
   RequestReader(const HistoryArguments& arguments, SummaryQuery& summaries,
@@ -52,10 +59,12 @@ class RequestReader {
     find_directory();
     check_names();
     if (r_.directory.empty()) return std::move(r_);
-    if (const std::string why = summaries_.open(r_.directory); !why.empty())
+    if (const std::string why = summaries_.open(r_.directory); !why.empty()) {
       problem(fmt::format("{}: {}", summary_file(r_.directory), why));
-    else
-      read_request();
+    } else {
+      read_span();
+      choose_parameters();
+    }
     if (const std::string why = summaries_.problem(); problems_.empty() && !why.empty())
       problem(fmt::format("{}: {}", summary_file(r_.directory), why));
     return std::move(r_);
@@ -95,11 +104,6 @@ class RequestReader {
     };
     code("--network", a_.network, 2);
     code("--station", a_.station, 5);
-  }
-
-  void read_request() {
-    read_span();
-    choose_parameters();
   }
 
   void read_span() {

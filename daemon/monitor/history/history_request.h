@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
+#include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/summary_query.h"
 
 namespace framewatch::daemon {
@@ -33,8 +34,6 @@ struct HistoryRequest {
   std::int64_t from_us = -kEver_us, to_us = kEver_us;
   std::int64_t period_s = 0;
   std::vector<SummaryParameter> parameters;
-
-  static constexpr std::int64_t kEver_us = INT64_MAX / 4;
 };
 
 /// Opens the history and looks up what the arguments name. Returns nullopt, with every problem,

@@ -116,10 +116,7 @@ std::span<const char* const> history_schema() {
 std::string upgrade(SqliteFile& file, std::span<const char* const> steps) {
   const std::int64_t version = version_of(file);
   const auto wanted = static_cast<std::int64_t>(steps.size());
-  if (version < 0) return file.error();
-  if (version > wanted)
-    return fmt::format("a newer framewatch wrote it (schema {}, this one knows {})", version,
-                       wanted);
+  if (version < 0 || version > wanted) return version_problem(file, steps);
   for (std::int64_t v = version; v < wanted; ++v) {
     const bool done = file.transaction([&] {
       return file.execute(steps[static_cast<std::size_t>(v)]) &&

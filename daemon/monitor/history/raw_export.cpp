@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/raw_export.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -10,15 +13,40 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/miniseed_file.h"
+#include "daemon/base/printable.h"
+#include "daemon/base/progress.h"
 #include "daemon/base/utc_time.h"
-#include "daemon/monitor/history/history_files.h"
+#include "daemon/config/channel_addresses.h"
+#include "daemon/monitor/history/raw_history_reader.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/records/record_csv_writer.h"
-#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
+
+struct RawChannel {
+  std::string name;
+  drivers::AxisAddress address;  ///< LCM address
+  std::size_t number =
+      0;  ///< among all channels, from 0; does not depend on which ones are exported
+};
+
+/// Writes raw samples of a history in the order in which they were received, in m/s^2 before
+/// calibration. Methods return false on failure; error() says why.
+class RawExport {
+ public:
+  virtual ~RawExport() = default;
+  /// Writes a sample; NaN stands for an invalid value.
+  [[nodiscard]] virtual bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) = 0;
+  /// Writes another message, if the format can store it.
+  [[nodiscard]] virtual bool message(const drivers::LogEvent&) { return true; }
+  /// Completes the file, which gets its final name only here.
+  [[nodiscard]] virtual bool close() = 0;
+  virtual std::string error() const = 0;
+  /// Returns notes about the file for the user, one line each.
+  virtual std::vector<std::string> notes() const { return {}; }
+};
 
 std::vector<std::string> names_of(const std::vector<RawChannel>& channels) {
   std::vector<std::string> out;
@@ -102,17 +130,15 @@ class LogExport : public RawExport {
 /// Writes a record, whose time zero is its first sample.
 class CsvExport : public RawExport {
  public:
-  explicit CsvExport(std::size_t channels) : channels_(channels) {}
-  bool open(const std::string& path, const std::vector<RawChannel>& channels) {
-    return csv_.open(path, names_of(channels));
-  }
+  explicit CsvExport(const std::vector<RawChannel>& channels) : names_(names_of(channels)) {}
+  bool open(const std::string& path) { return csv_.open(path, names_); }
   bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) override {
     if (!zero_us_) zero_us_ = time_us;
     if (time_us <= written_us_) {
       ++out_of_order_;
       return true;
     }
-    auto& row = rows_.try_emplace(time_us, channels_, estimator::kNaN).first->second;
+    auto& row = rows_.try_emplace(time_us, names_.size(), estimator::kNaN).first->second;
     row[channel] = accel_mps2;
     // Nodes are never this far behind each other.
     while (rows_.size() > 1 && rows_.begin()->first < time_us - kSecond_us)
@@ -143,7 +169,7 @@ class CsvExport : public RawExport {
     return good;
   }
 
-  std::size_t channels_;
+  std::vector<std::string> names_;
   drivers::RecordCsvWriter csv_;
   std::map<std::int64_t, std::vector<double>> rows_;
   std::optional<std::int64_t> zero_us_;
@@ -153,7 +179,7 @@ class CsvExport : public RawExport {
 class SeedExport : public RawExport {
  public:
   SeedExport(const std::vector<RawChannel>& channels, double rate_hz, double resolution_mps2,
-             const SeedNames& names)
+             const HistoryArguments& names)
       : resolution_mps2_(resolution_mps2),
         file_(seed_channels(channels, rate_hz, names), rate_hz),
         names_(names_of(channels)) {}
@@ -174,7 +200,7 @@ class SeedExport : public RawExport {
 
  private:
   static std::vector<SeedChannel> seed_channels(const std::vector<RawChannel>& channels,
-                                                double rate_hz, const SeedNames& names) {
+                                                double rate_hz, const HistoryArguments& names) {
     std::vector<SeedChannel> out;
     for (const RawChannel& channel : channels)
       out.push_back(seed_channel(names.network, names.station, channel.number, rate_hz));
@@ -186,37 +212,129 @@ class SeedExport : public RawExport {
   std::vector<std::string> names_;
 };
 
-}  // namespace
-
-std::unique_ptr<RawExport> raw_export(const std::string& path,
+/// Makes an export by the ending of its name: .lcmlog (accel_t, as `framewatch replay` reads), .csv
+/// and .csv.gz (a record) or .mseed (Steim-2 counts of `resolution_mps2`). Returns nullptr and sets
+/// `error` on failure.
+std::unique_ptr<RawExport> raw_export(const HistoryArguments& arguments,
                                       const std::vector<RawChannel>& channels, double rate_hz,
-                                      double resolution_mps2, const SeedNames& names,
-                                      std::string& error) {
-  const auto opened = [&](auto out, bool good) -> std::unique_ptr<RawExport> {
-    if (good) return out;
+                                      double resolution_mps2, std::string& error) {
+  const std::string& path = arguments.raw;
+  const auto opened = [&](auto out) -> std::unique_ptr<RawExport> {
+    if (out->open(path)) return out;
     error = fmt::format("{}: {}", path, out->error());
     return nullptr;
   };
-  if (path.ends_with(".lcmlog")) {
-    auto out = std::make_unique<LogExport>(channels, rate_hz);
-    const bool good = out->open(path);
-    return opened(std::move(out), good);
-  }
-  if (path.ends_with(".mseed")) {
-    auto out = std::make_unique<SeedExport>(channels, rate_hz, resolution_mps2, names);
-    const bool good = out->open(path);
-    return opened(std::move(out), good);
-  }
-  auto out = std::make_unique<CsvExport>(channels.size());
-  const bool good = out->open(path, channels);
-  return opened(std::move(out), good);
+  if (path.ends_with(".lcmlog")) return opened(std::make_unique<LogExport>(channels, rate_hz));
+  if (path.ends_with(".mseed"))
+    return opened(std::make_unique<SeedExport>(channels, rate_hz, resolution_mps2, arguments));
+  return opened(std::make_unique<CsvExport>(channels));
 }
 
-std::string problem_of_raw_name(const std::string& path) {
-  if (path == drivers::kStandardOutput) return {};
-  for (const char* ending : {".lcmlog", ".csv", ".csv.gz", ".mseed"})
-    if (path.ends_with(ending)) return {};
-  return path + ": the name for raw samples must end in .lcmlog, .csv, .csv.gz or .mseed";
+constexpr std::int64_t kProgressSamples = 1 << 14;
+
+class RawJob {
+ public:
+  RawJob(const HistoryArguments& arguments, const HistoryRequest& request,
+         std::vector<std::string>& problems)
+      : a_(arguments), request_(request), problems_(problems) {}
+
+  void run() {
+    (*progress_)("looking for raw samples", 0);
+    const std::vector<RawLog> logs =
+        raw_logs_between(request_.directory, request_.from_us, request_.to_us);
+    // Reads everything once first: an export has all of its channels from the start.
+    std::vector<std::string> names;
+    double rate_hz = 0, resolution_mps2 = 0;
+    std::int64_t samples = 0;
+    std::vector<std::string> notes;
+    std::string why;
+    if (!read_raw_history(logs, request_.from_us, request_.to_us,
+                          {[&](const auto& now, double rate) {
+                             for (const std::string& name : now)
+                               if (std::find(names.begin(), names.end(), name) == names.end())
+                                 names.push_back(name);
+                             if (rate_hz == 0) rate_hz = rate;
+                           },
+                           [&](const RawCount& c) {
+                             ++samples;
+                             if (resolution_mps2 == 0) resolution_mps2 = c.resolution_mps2;
+                           }},
+                          notes, why))
+      return problem(why);
+    check_patterns("--channel", a_.channels, names, problems_);
+    if (samples == 0) problem("there are no raw samples in that time");
+    if (!problems_.empty()) return;
+    std::vector<RawChannel> channels;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (is_chosen(a_.channels, names[i])) channels.push_back(placed(names[i], i));
+    std::erase_if(names, [&](const std::string& name) { return !is_chosen(a_.channels, name); });
+    const auto out = raw_export(a_, channels, rate_hz, resolution_mps2, why);
+    if (!out) return problem(why);
+    expected_ = samples;
+    progress_->part_begins();
+    write_raw(logs, names, *out);
+  }
+
+ private:
+  void problem(std::string message) { problems_.push_back(std::move(message)); }
+
+  /// Returns the LCM address of a channel: from the configuration, otherwise a separate node.
+  RawChannel placed(const std::string& name, std::size_t index) const {
+    if (request_.config) {
+      const auto all = addresses(request_.config->sources);
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (request_.config->pipeline.axes[i].name == name) return {name, all[i], i};
+    }
+    return {name, {"ACCEL", static_cast<std::int32_t>(index), 0}, index};
+  }
+
+  void write_raw(const std::vector<RawLog>& logs, const std::vector<std::string>& names,
+                 RawExport& out) {
+    std::vector<std::optional<std::size_t>> place;  // by channel of the log
+    std::int64_t seen = 0, samples = 0, beyond = 0;
+    bool good = true;
+    std::vector<std::string> notes;
+    std::string why;
+    const RawVisitor visitor{
+        [&](const std::vector<std::string>& now, double) {
+          place.assign(now.size(), std::nullopt);
+          for (std::size_t i = 0; i < now.size(); ++i)
+            if (const auto at = std::find(names.begin(), names.end(), now[i]); at != names.end())
+              place[i] = static_cast<std::size_t>(at - names.begin());
+        },
+        [&](const RawCount& c) {
+          if (++seen % kProgressSamples == 0)
+            (*progress_)("writing " + a_.raw,
+                         static_cast<double>(seen) / static_cast<double>(expected_));
+          if (!good || !place[c.channel]) return;
+          ++samples;
+          beyond += c.count == drivers::kMaxCount || c.count == -drivers::kMaxCount;
+          good = out.put(*place[c.channel], c.time_us, c.accel_mps2());
+        },
+        [&](const drivers::LogEvent& event) { good = good && out.message(event); }};
+    const bool read = read_raw_history(logs, request_.from_us, request_.to_us, visitor, notes, why);
+    if (!read || !good || !out.close())
+      return problem(read ? fmt::format("{}: {}", a_.raw, out.error()) : why);
+    progress_.reset();
+    std::FILE* const where = a_.raw == drivers::kStandardOutput ? stderr : stdout;
+    fmt::print(where, "{}: {} samples of {} channels\n", a_.raw, samples, names.size());
+    if (beyond > 0) fmt::print(where, "{} of them exceed the stored range\n", beyond);
+    for (const std::string& note : notes) fmt::print(where, "{}\n", printable_lines(note));
+    for (const std::string& note : out.notes()) fmt::print(where, "{}\n", printable_lines(note));
+  }
+
+  const HistoryArguments& a_;
+  const HistoryRequest& request_;
+  std::vector<std::string>& problems_;
+  std::int64_t expected_ = 0;  ///< total of all channels
+  std::optional<ProgressLine> progress_{std::in_place, "history", false};
+};
+
+}  // namespace
+
+void export_raw_history(const HistoryArguments& arguments, const HistoryRequest& request,
+                        std::vector<std::string>& problems) {
+  RawJob(arguments, request, problems).run();
 }
 
 }  // namespace framewatch::daemon

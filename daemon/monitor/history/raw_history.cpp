@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/history/history_files.h"

@@ -32,7 +32,6 @@ class RawHistory {
   /// `config`, which has a history, must outlive this.
   RawHistory(const Config& config, Retire retire, std::size_t queue_bytes = kQueueBytes);
 
-  /// Stores a sample.
   void sample(const estimator::AccelSample& sample);
   /// Stores another message beside the samples, unchanged. Ignores messages before the first
   /// sample.

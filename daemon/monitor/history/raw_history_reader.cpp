@@ -10,7 +10,6 @@
 #include <fmt/core.h>
 
 #include "drivers/lcm/accel_codec.h"
-#include "drivers/lcm/count_block.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
@@ -46,14 +45,21 @@ std::vector<RawLog> raw_logs_between(const std::string& directory, std::int64_t 
     if (!over && raw[i].start_us < to_us + kMargin_us) out.push_back(raw[i]);
   }
   for (const RawLog& event : raw_logs(event_folder(directory))) {
-    const bool there = std::any_of(raw.begin(), raw.end(),
-                                   [&](const RawLog& log) { return stem(log) == stem(event); });
+    const bool there = std::ranges::find(raw, stem(event), stem) != raw.end();
     if (!there && event.start_us < to_us + kMargin_us &&
         event.start_us > from_us - kLongest_us - kMargin_us)
       out.push_back(event);
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const RawLog& a, const RawLog& b) { return a.start_us < b.start_us; });
+  std::ranges::stable_sort(out, {}, &RawLog::start_us);
+  return out;
+}
+
+std::vector<int> axes_of(const std::vector<std::string>& channels,
+                         const std::vector<estimator::SensorAxis>& axes) {
+  std::vector<int> out(channels.size(), -1);
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      if (axes[a].name == channels[i]) out[i] = static_cast<int>(a);
   return out;
 }
 

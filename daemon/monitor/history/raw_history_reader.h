@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "daemon/monitor/history/history_files.h"
+#include "drivers/lcm/count_block.h"
 #include "drivers/lcm/lcm_log.h"
+#include "estimator/numeric/nan.h"
+#include "estimator/structure/sensors.h"
 
 namespace framewatch::daemon {
 
@@ -16,6 +19,10 @@ struct RawCount {
   std::size_t channel;  ///< index in the newest table
   std::int32_t count;   ///< as in accel_counts_t
   double resolution_mps2;
+  /// Returns the acceleration before calibration; NaN for an invalid value.
+  double accel_mps2() const {
+    return count == drivers::kNoCount ? estimator::kNaN : count * resolution_mps2;
+  }
 };
 
 /// Receives the content of raw logs.
@@ -31,6 +38,10 @@ struct RawVisitor {
 /// kept for events, in order of time.
 std::vector<RawLog> raw_logs_between(const std::string& directory, std::int64_t from_us,
                                      std::int64_t to_us);
+
+/// Returns the index of the axis by channel of the log; -1 for a channel without an axis.
+std::vector<int> axes_of(const std::vector<std::string>& channels,
+                         const std::vector<estimator::SensorAxis>& axes);
 
 /// Reads their samples in the order in which they were received. Reads the intact part of a log
 /// that is being written, truncated or damaged, and adds a note. Returns false and sets `problem`

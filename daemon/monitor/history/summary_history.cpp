@@ -29,16 +29,7 @@ SummaryHistory::SummaryHistory(const Config& config)
       intake_(config.lcm.prefix, config.history->summary_s.front(), [this] { commit(); }),
       next_commit_(Clock::now()),
       next_prune_(next_commit_),
-      thread_([this] { work(); }) {}
-
-SummaryHistory::~SummaryHistory() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_one();
-  thread_.join();
-}
+      thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 void SummaryHistory::message(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
   const auto kind = intake_.kind_of(channel);
@@ -58,23 +49,28 @@ SummaryHistory::Counters SummaryHistory::counters() const {
   return counters_;
 }
 
-void SummaryHistory::work() {
+void SummaryHistory::work(const std::stop_token& stop) {
   // Reads the stored periods before the first window comes.
   guarded(0, [this] { commit(); });
   for (bool last = false; !last;) {
     std::vector<Message> messages;
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      wake_.wait_for(lock, kBetweenPuts, [this] { return stop_; });
-      last = stop_;
+      wake_.wait_for(lock, stop, kBetweenPuts, [] { return false; });
+      last = stop.stop_requested();
       messages.swap(queue_);
       queued_ = 0;
     }
     guarded(messages.size(), [&] {
-      for (const Message& message : messages) take(message);
+      for (const Message& message : messages) {
+        const SummaryIntake::Taken taken = intake_.take(message.kind, message.bytes);
+        if (taken.period) next_commit_ = std::min(next_commit_, Clock::now());
+        if (taken.news) next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
+      }
       const bool due = Clock::now() >= next_commit_;
       // Ends the period even if the sensors fall silent in the middle of it.
-      if (last || (due && waiting().empty())) end_period();
+      if ((last || (due && waiting().empty())) && intake_.end_period())
+        next_commit_ = std::min(next_commit_, Clock::now());
       if (last || due) commit();
     });
   }
@@ -89,16 +85,6 @@ void SummaryHistory::guarded(std::size_t messages, const std::function<void()>& 
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.dropped += static_cast<std::int64_t>(messages);
   counters_.trouble = thrown;
-}
-
-void SummaryHistory::take(const Message& message) {
-  const SummaryIntake::Taken taken = intake_.take(message.kind, message.bytes);
-  if (taken.period) next_commit_ = std::min(next_commit_, Clock::now());
-  if (taken.news) next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
-}
-
-void SummaryHistory::end_period() {
-  if (intake_.end_period()) next_commit_ = std::min(next_commit_, Clock::now());
 }
 
 std::string SummaryHistory::store_waiting() {
@@ -117,7 +103,7 @@ bool SummaryHistory::begin_anew(const std::string& reason) {
   store_.close();
   std::vector<event_t> readable;
   if (SummaryQuery old; old.open(config_.history->directory).empty())
-    readable = old.events(INT64_MIN / 4, INT64_MAX / 4, kMaxEvents);
+    readable = old.events(-kEver_us, kEver_us, kMaxEvents);
   SetAside aside = counters().set_aside;
   set_aside_database(database, host_clock_us(), reason, aside);
   if (aside.problem.empty()) {
@@ -173,14 +159,11 @@ void SummaryHistory::bound() {
     dropped += waiting().periods.front().windows;
     waiting().periods.erase(waiting().periods.begin());
   }
-  while (waiting().events.size() > kMaxEvents) {
-    ++dropped;
-    waiting().events.erase(waiting().events.begin());
-  }
-  while (waiting().acknowledged.size() > kMaxEvents) {
-    ++dropped;
-    waiting().acknowledged.erase(waiting().acknowledged.begin());
-  }
+  const auto bound_news = [&dropped](auto& news) {
+    for (; news.size() > kMaxEvents; news.erase(news.begin())) ++dropped;
+  };
+  bound_news(waiting().events);
+  bound_news(waiting().acknowledged);
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.dropped += dropped;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -37,10 +38,6 @@ class SummaryHistory {
 
   /// `config`, which has a history, must outlive this.
   explicit SummaryHistory(const Config& config);
-  /// Tries once to commit the waiting data.
-  ~SummaryHistory();
-  SummaryHistory(const SummaryHistory&) = delete;
-  SummaryHistory& operator=(const SummaryHistory&) = delete;
 
   /// Takes a message that the estimation published. Ignores all but estimates of the main window,
   /// tables, statuses, events and acknowledgements.
@@ -54,10 +51,8 @@ class SummaryHistory {
     std::vector<std::uint8_t> bytes;
   };
 
-  void work();
+  void work(const std::stop_token& stop);
   void guarded(std::size_t messages, const std::function<void()>& round);
-  void take(const Message& message);
-  void end_period();
   void commit();
   std::string store_waiting();
   bool begin_anew(const std::string& reason);
@@ -73,12 +68,12 @@ class SummaryHistory {
   std::int64_t repeated_said_ = 0;
 
   mutable std::mutex mutex_;  ///< guards the members below
-  std::condition_variable wake_;
+  std::condition_variable_any wake_;
   std::vector<Message> queue_;
   std::size_t queued_ = 0;  ///< bytes
   Counters counters_;
-  bool stop_ = false;
-  std::thread thread_;  ///< last, because it uses the members above
+  /// Last, because it uses the members above. At the end it tries once to commit the waiting data.
+  std::jthread thread_;
 };
 
 }  // namespace framewatch::daemon

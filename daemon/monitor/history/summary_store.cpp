@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -21,9 +20,7 @@ namespace framewatch::daemon {
 namespace {
 
 std::int64_t start_of(std::int64_t time_us, std::int64_t period_s) {
-  const std::int64_t step_us = period_s * kSecond_us;
-  const std::int64_t rest = time_us % step_us;
-  return time_us - (rest < 0 ? rest + step_us : rest);
+  return floor_to(time_us, period_s * kSecond_us);
 }
 
 /// Binds the columns of a summary from `observable` on, starting at index `at`.
@@ -43,35 +40,29 @@ constexpr const char* kPutSummary =
 
 }  // namespace
 
-HistoryLock::~HistoryLock() {
-  if (file_ >= 0) ::close(file_);
-}
-
-std::string HistoryLock::take(const std::string& directory) {
-  if (file_ >= 0) return {};
-  const int file = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) return std::strerror(errno);
-  if (::flock(file, LOCK_EX | LOCK_NB) == 0) {
-    file_ = file;
-    return {};
-  }
+/// Takes the lock unless this program has it. Returns an empty string, or the reason of a failure.
+std::string SummaryStore::lock() {
+  if (lock_.get() >= 0) return {};
+  lock_.reset(::open(settings_.directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (lock_.get() >= 0 && ::flock(lock_.get(), LOCK_EX | LOCK_NB) == 0) return {};
   const int why = errno;
-  ::close(file);
+  lock_.reset(-1);
   return why == EWOULDBLOCK ? "another program writes this history" : std::strerror(why);
 }
 
 std::string SummaryStore::open() {
   std::error_code none;
   std::filesystem::create_directories(settings_.directory, none);
-  if (std::string problem = lock_.take(settings_.directory); !problem.empty()) return problem;
-  if (!file_.open(summary_file(settings_.directory))) return file_.error();
-  std::string problem = upgrade(file_, history_schema());
-  if (!problem.empty()) file_.close();
-  return problem;
+  if (std::string problem = lock(); !problem.empty()) return problem;
+  return upgraded(file_.open(summary_file(settings_.directory)));
 }
 
 std::string SummaryStore::open_new(const std::string& path) {
-  if (!file_.open_new(path)) return file_.error();
+  return upgraded(file_.open_new(path));
+}
+
+std::string SummaryStore::upgraded(bool opened) {
+  if (!opened) return file_.error();
   std::string problem = upgrade(file_, history_schema());
   if (!problem.empty()) file_.close();
   return problem;

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <set>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,24 +14,9 @@
 #include "daemon/base/sqlite_file.h"
 #include "daemon/config/keys/history_options.h"
 #include "daemon/monitor/estimates/summary_intake.h"
+#include "drivers/files/descriptor.h"
 
 namespace framewatch::daemon {
-
-/// A lock on a history: two programs that write summaries would count every window twice. The
-/// kernel releases it when the program ends, even after a crash.
-class HistoryLock {
- public:
-  HistoryLock() = default;
-  ~HistoryLock();
-  HistoryLock(const HistoryLock&) = delete;
-  HistoryLock& operator=(const HistoryLock&) = delete;
-
-  /// Takes the lock and keeps it. Returns an empty string, or the reason of a failure.
-  std::string take(const std::string& directory);
-
- private:
-  int file_ = -1;
-};
 
 /// Writes the database of a history: summaries of the configured periods, channels, events. Counts
 /// repeated messages once: ignores windows that ended before the newest one of their period or
@@ -64,6 +48,8 @@ class SummaryStore {
   std::string prune(std::int64_t newest_us);
 
  private:
+  std::string lock();
+  std::string upgraded(bool opened);
   bool add_names(const SummaryBatch& batch);
   using Grown = std::set<std::pair<std::int64_t, std::int64_t>>;  ///< length and start
   bool add_period(const PeriodData& data, Grown& grown);
@@ -74,7 +60,9 @@ class SummaryStore {
   bool add_acknowledged(const acknowledged_t& acknowledged);
 
   HistorySettings settings_;
-  HistoryLock lock_;
+  /// On the directory: two programs that write summaries would count every window twice. The kernel
+  /// releases it when the program ends, even after a crash.
+  drivers::Descriptor lock_;
   SqliteFile file_;
   std::vector<std::int64_t> parameter_ids_, channel_ids_;
   std::int64_t repeated_ = 0;

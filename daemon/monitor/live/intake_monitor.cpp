@@ -14,8 +14,13 @@
 namespace framewatch::daemon {
 namespace {
 
-void add(std::string& news, std::int64_t before, std::int64_t now, const char* what) {
-  if (now > before) news += fmt::format("{}{} {}", news.empty() ? "" : ", ", now - before, what);
+/// Appends the increase since `seen`, if any, and sets `seen`.
+void add(std::string& news, std::int64_t& seen, std::int64_t now, const char* what,
+         const std::string& of = "") {
+  if (now > seen)
+    news += fmt::format("{}{} {}{}", news.empty() ? "" : ", ", now - seen, what,
+                        of.empty() ? "" : " (" + of + ")");
+  seen = now;
 }
 
 }  // namespace
@@ -111,7 +116,7 @@ std::string CanWarnings::bus_news(std::size_t b, const drivers::CanBusCounters& 
 
 std::string CanWarnings::node_news(std::size_t n, const drivers::CanNodeCounters& now) {
   Node& node = nodes_[n];
-  const drivers::CanNodeCounters& before = node.counters;
+  drivers::CanNodeCounters& before = node.counters;
   std::string news;
   add(news, before.lost, now.lost, "lost");
   add(news, before.late, now.late, "late");
@@ -153,8 +158,6 @@ std::vector<std::string> CanWarnings::collect(const drivers::CanIntake& can,
   std::string host;
   add(host, dropped_, source.dropped(), "CAN frames dropped by full receive queues");
   add(host, steps_, source.clock_steps() + can.host_steps(), "steps of the host's clock corrected");
-  dropped_ = source.dropped();
-  steps_ = source.clock_steps() + can.host_steps();
   if (!host.empty()) out.push_back(host);
   return out;
 }
@@ -183,24 +186,16 @@ void IntakeWarnings::update(const LiveEstimation& live, std::int64_t now_us) {
   add(news, seen_[4], late, "samples late");
   add(news, seen_[5], rejected, "samples rejected", rejected_of);
   add(news, seen_[6], estimation.intake().backwards(), "steps back in time");
-  add(news, seen_[12], intake.other_sender, "messages of a second sender");
-  add(news, seen_[7], pipeline.interruptions, "interruptions that restarted the window");
-  add(news, seen_[8], dropped.from_elsewhere, "datagrams from elsewhere dropped");
-  add(news, seen_[9], dropped.malformed, "datagrams that are not LCM");
-  add(news, seen_[10], dropped.unfinished, "messages dropped because a part never came");
-  add(news, seen_[11], dropped.overflowed, "datagrams dropped by the kernel's full buffer");
+  add(news, seen_[7], intake.other_sender, "messages of a second sender");
+  add(news, seen_[8], pipeline.interruptions, "interruptions that restarted the window");
+  add(news, seen_[9], dropped.from_elsewhere, "datagrams from elsewhere dropped");
+  add(news, seen_[10], dropped.malformed, "datagrams that are not LCM");
+  add(news, seen_[11], dropped.unfinished, "messages dropped because a part never came");
+  add(news, seen_[12], dropped.overflowed, "datagrams dropped by the kernel's full buffer");
   if (!news.empty()) log(LogLevel::warning, news);
   for (const std::string& name : estimation.intake().binding().unbound())
     if (!said_unbound_) log(LogLevel::warning, fmt::format("no message carries {} yet", name));
   said_unbound_ = true;
-}
-
-void IntakeWarnings::add(std::string& news, std::int64_t& seen, std::int64_t now, const char* what,
-                         const std::string& of) {
-  if (now > seen)
-    news += fmt::format("{}{} {}{}", news.empty() ? "" : ", ", now - seen, what,
-                        of.empty() ? "" : " (" + of + ")");
-  seen = now;
 }
 
 }  // namespace framewatch::daemon

@@ -81,9 +81,6 @@ class IntakeWarnings {
   void update(const LiveEstimation& live, std::int64_t now_us);
 
  private:
-  static void add(std::string& news, std::int64_t& seen, std::int64_t now, const char* what,
-                  const std::string& of = "");
-
   OnceASecond second_;
   std::int64_t seen_[13] = {};
   std::vector<std::int64_t> rejected_;  ///< by axis

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/live/live_estimation.h"
 
-#include <utility>
-
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/actions/acknowledge.h"
-#include "daemon/monitor/live/live_intake.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -141,12 +138,7 @@ bool LiveEstimation::poll(int timeout_ms) {
 void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
   const std::string& interface = config_->can.buses[static_cast<std::size_t>(bus)].interface;
   if (can_log_ != nullptr && !can_log_->write(frame, interface)) can_log_failed_ = true;
-  if (catching_up()) {
-    Later later;
-    later.bus = bus;
-    later.frame = frame;
-    return keep(std::move(later));
-  }
+  if (catching_up()) return keep({.bus = bus, .frame = frame});
   estimate_frame(bus, frame);
 }
 
@@ -160,20 +152,17 @@ void LiveEstimation::estimate_frame(int bus, const drivers::CanFrame& frame) {
 }
 
 void LiveEstimation::on_message(const drivers::LcmMessage& message) {
+  const auto* bytes = static_cast<const std::uint8_t*>(message.data);
   if (message.channel == request_channel_) {
-    const auto* bytes = static_cast<const std::uint8_t*>(message.data);
     if (requests_.size() < AcknowledgeDesk::kMaxRequests)
       requests_.emplace_back(bytes, bytes + message.size);
     return;
   }
   if (!catching_up()) return estimate_message(message);
-  const auto* bytes = static_cast<const std::uint8_t*>(message.data);
-  Later later;
-  later.channel = message.channel;
-  later.data.assign(bytes, bytes + message.size);
-  later.sender = message.sender;
-  later.received_us = message.received_us;
-  keep(std::move(later));
+  keep({.channel = message.channel,
+        .data = {bytes, bytes + message.size},
+        .sender = message.sender,
+        .received_us = message.received_us});
 }
 
 void LiveEstimation::estimate_message(const drivers::LcmMessage& message) {

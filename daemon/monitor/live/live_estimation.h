@@ -85,7 +85,6 @@ class LiveEstimation : public EstimationListener {
   /// Waits for messages at most `timeout_ms` and handles all that have come. Returns false when LCM
   /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
   [[nodiscard]] bool poll(int timeout_ms);
-  /// Ends the input of the estimation.
   void finish() { estimation_->finish(); }
   /// Makes poll() pass these samples to the estimation first, for at most kFeed_ms a call, and keep
   /// newer input until they are done. They are not stored again.
@@ -117,8 +116,8 @@ class LiveEstimation : public EstimationListener {
  private:
   /// A message or frame that came during catch_up().
   struct Later {
-    std::string channel;  ///< empty: a frame
-    std::vector<std::uint8_t> data;
+    std::string channel = {};  ///< empty: a frame
+    std::vector<std::uint8_t> data = {};
     drivers::LcmSender sender{};
     std::int64_t received_us = 0;
     int bus = 0;

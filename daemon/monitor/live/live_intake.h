@@ -47,7 +47,6 @@ std::string nothing_to_hear(const Config& config, bool by_name);
 /// nodes name channels (`by_name`).
 std::string channels_without_source(const Config& config, bool by_name);
 
-/// Returns the LCM channel for requests to acknowledge an event.
 std::string acknowledge_channel(const Config& config);
 
 }  // namespace framewatch::daemon

@@ -2,36 +2,19 @@
 #include "daemon/monitor/live/raw_backlog.h"
 
 #include <algorithm>
-#include <optional>
-#include <utility>
 
-#include "daemon/base/clocks.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/raw_history_reader.h"
-#include "drivers/lcm/count_block.h"
 #include "estimator/motion/acquisition.h"
-#include "estimator/numeric/nan.h"
 #include "estimator/shaking/shaking_watch.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kEver_us = 2'000'000'000'000'000'000;
 constexpr double kOtherClocks_s = 60;  // the stamps of two axes may differ by this
 
 std::int64_t backlog_us(double seconds) {
   return static_cast<std::int64_t>(1e6 * seconds);
-}
-
-/// Returns the index of the configured axis by channel of the log; -1 for a channel that is not
-/// configured.
-std::vector<int> axes_of(const std::vector<std::string>& names, const Config& config) {
-  std::vector<int> out(names.size(), -1);
-  const std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    for (std::size_t a = 0; a < axes.size(); ++a)
-      if (axes[a].name == names[i]) out[i] = static_cast<int>(a);
-  return out;
 }
 
 }  // namespace
@@ -51,15 +34,15 @@ RawBacklog RawBacklog::read(const Config& config, const std::vector<std::int64_t
                                              config.pipeline.axes.size();
   std::vector<int> axis_of;
   const RawVisitor visitor{
-      [&](const std::vector<std::string>& names, double) { axis_of = axes_of(names, config); },
+      [&](const std::vector<std::string>& names, double) {
+        axis_of = axes_of(names, config.pipeline.axes);
+      },
       [&](const RawCount& c) {
         const int axis = axis_of[c.channel];
         if (axis < 0 || c.time_us <= known_us[static_cast<std::size_t>(axis)] ||
             out.samples_.size() >= most)
           return;
-        const double accel =
-            c.count == drivers::kNoCount ? estimator::kNaN : c.count * c.resolution_mps2;
-        out.samples_.push_back({estimator::from_microseconds(c.time_us), axis, accel});
+        out.samples_.push_back({estimator::from_microseconds(c.time_us), axis, c.accel_mps2()});
       },
       [&](const drivers::LogEvent& event) {
         if (event.timestamp_us > newest_us) out.messages_.push_back({out.samples_.size(), event});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +10,14 @@
 #include "daemon/config/changes.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/settings.h"
-#include "daemon/monitor/live/service_report.h"
 
 namespace framewatch::daemon {
+
+/// The outcome of the requests to reload the configuration.
+struct ReloadCount {
+  std::int64_t done = 0, refused = 0;
+  std::string problem;  ///< why the newest one was refused; empty: accepted
+};
 
 /// Reads the configuration file of a running estimation again. A file that is invalid, or that
 /// changes settings that need a restart, is refused: the log says why, line by line.

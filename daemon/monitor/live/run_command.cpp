@@ -23,15 +23,12 @@
 #include "daemon/monitor/actions/action_report.h"
 #include "daemon/monitor/estimation/state_file.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "daemon/monitor/history/history_report.h"
+#include "daemon/monitor/history/history.h"
 #include "daemon/monitor/live/housekeeping.h"
-#include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "daemon/monitor/live/raw_backlog.h"
 #include "daemon/monitor/service/command_socket.h"
-#include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
-#include "daemon/monitor/service/start_count.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/partial_file.h"
@@ -44,12 +41,35 @@ namespace {
 class LiveEvents {
  public:
   /// All arguments must outlive this.
-  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history);
-  LiveEvents(const LiveEvents&) = delete;
-  LiveEvents& operator=(const LiveEvents&) = delete;
+  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history)
+      : config_(config),
+        live_(live),
+        history_(history),
+        actions_(config, lcm),
+        desk_(config, lcm,
+              [this](const event_t& event, const Acknowledgement& by) { acknowledged(event, by); }),
+        commands_(config, "run", [this](const CommandPacket& command, const std::string& user) {
+          return obey(command, user);
+        }) {
+    actions_.raised_before(live_.estimation().raised());
+  }
 
   /// Handles new events and requests. Call it several times a second.
-  void poll();
+  void poll() {
+    for (const event_t& event : live_.take_events()) {
+      log(event.severity >= severity::warning ? LogLevel::warning : LogLevel::notice,
+          fmt::format("{} {}: {}", event.kind, event.place, event.message));
+      actions_.event(event, live_.estimation().raised().acknowledgement(event.id) != nullptr);
+    }
+    for (const std::vector<std::uint8_t>& request : live_.take_requests())
+      desk_.heard(request, host_clock_us());
+    for (const event_t& event : history_.update(host_clock_us()))
+      actions_.event(event, history_.raised().acknowledgement(event.id) != nullptr);
+    commands_.poll(steady_clock_us());
+    desk_.update(raised(), host_clock_us());
+    actions_.update(host_clock_us());
+  }
+
   /// Continues with another configuration, of which [actions] may differ.
   void reconfigure(const Config& config) { actions_.reconfigure(config); }
 
@@ -57,8 +77,22 @@ class LiveEvents {
   AcknowledgeDesk::Raised raised() { return {&live_.estimation().raised(), &history_.raised()}; }
 
  private:
-  void acknowledged(const event_t& event, const Acknowledgement& by);
-  CommandPacket obey(const CommandPacket& command, const std::string& user);
+  void acknowledged(const event_t& event, const Acknowledgement& by) {
+    actions_.acknowledged(event);
+    if (history_.history() == nullptr) return;
+    acknowledged_t message{};
+    message.time_us = by.time_us;
+    add_acknowledged(message, event, by);
+    history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED", drivers::encoded(message));
+  }
+
+  CommandPacket obey(const CommandPacket& command, const std::string& user) {
+    if (command.channel != "ACKNOWLEDGE")
+      return refused("framewatch run takes no other command than acknowledge");
+    const auto answer = desk_.obey(command.bytes, user, raised(), host_clock_us());
+    if (!answer) return refused("cannot read the request: is it from another version?");
+    return {"ACKNOWLEDGED", drivers::encoded(*answer)};
+  }
 
   const Config& config_;
   LiveEstimation& live_;
@@ -67,50 +101,6 @@ class LiveEvents {
   AcknowledgeDesk desk_;
   CommandSocket commands_;
 };
-
-LiveEvents::LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live,
-                       HistoryReport& history)
-    : config_(config),
-      live_(live),
-      history_(history),
-      actions_(config, lcm),
-      desk_(config, lcm,
-            [this](const event_t& event, const Acknowledgement& by) { acknowledged(event, by); }),
-      commands_(config, "run", [this](const CommandPacket& command, const std::string& user) {
-        return obey(command, user);
-      }) {
-  actions_.raised_before(live_.estimation().raised());
-}
-
-void LiveEvents::acknowledged(const event_t& event, const Acknowledgement& by) {
-  actions_.acknowledged(event);
-  if (history_.history() != nullptr)
-    history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED",
-                                drivers::encoded(acknowledged_message(event, by)));
-}
-
-CommandPacket LiveEvents::obey(const CommandPacket& command, const std::string& user) {
-  if (command.channel != "ACKNOWLEDGE")
-    return refused("framewatch run takes no other command than acknowledge");
-  const auto answer = desk_.obey(command.bytes, user, raised(), host_clock_us());
-  if (!answer) return refused("cannot read the request: is it from another version?");
-  return {"ACKNOWLEDGED", drivers::encoded(*answer)};
-}
-
-void LiveEvents::poll() {
-  for (const event_t& event : live_.take_events()) {
-    log(event.severity >= severity::warning ? LogLevel::warning : LogLevel::notice,
-        fmt::format("{} {}: {}", event.kind, event.place, event.message));
-    actions_.event(event, live_.estimation().raised().acknowledgement(event.id) != nullptr);
-  }
-  for (const std::vector<std::uint8_t>& request : live_.take_requests())
-    desk_.heard(request, host_clock_us());
-  for (const event_t& event : history_.update(host_clock_us()))
-    actions_.event(event, history_.raised().acknowledgement(event.id) != nullptr);
-  commands_.poll(steady_clock_us());
-  desk_.update(raised(), host_clock_us());
-  actions_.update(host_clock_us());
-}
 
 constexpr int kPoll_ms = 100;
 
@@ -142,8 +132,7 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
     log(LogLevel::notice,
         fmt::format("resumed from {}: {} windows so far", path, live->estimation().windows()));
     log_lost(path, state.lost);
-    return std::none_of(state.lost.begin(), state.lost.end(),
-                        [](const LostSection& l) { return l.name == "window"; });
+    return std::ranges::find(state.lost, "window", &LostSection::name) == state.lost.end();
   }
   const std::string aside = path + ".refused";
   std::filesystem::rename(path, aside, none);

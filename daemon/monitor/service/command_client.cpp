@@ -12,7 +12,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <optional>
 
 #include <fmt/core.h>
 
@@ -78,22 +77,20 @@ CommandAnswer exchange(const drivers::Descriptor& file, const std::string& path,
                        const CommandPacket& command) {
   const std::vector<std::uint8_t> bytes = packet_bytes(command);
   if (bytes.size() > CommandPacket::kMaxBytes)
-    return {false, fmt::format("a command has {} bytes at most", CommandPacket::kMaxBytes), {}};
+    return {false, fmt::format("a command has {} bytes at most", CommandPacket::kMaxBytes)};
   std::vector<std::uint8_t> in(CommandPacket::kMaxBytes + 1);
   if (::send(file.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL) < 0)
-    return {false, fmt::format("{}: {}", path, std::strerror(errno)), {}};
+    return {false, fmt::format("{}: {}", path, std::strerror(errno))};
   const ssize_t got = ::recv(file.get(), in.data(), in.size(), 0);
   if (got <= 0)
     return {false,
             fmt::format("{}: the daemon {}", path,
                         got == 0 || errno != EAGAIN ? "closed the connection without an answer"
-                                                    : "does not answer"),
-            {}};
+                                                    : "does not answer")};
   const auto packet = packet_of({in.data(), static_cast<std::size_t>(got)});
-  if (!packet)
-    return {false, fmt::format("{}: the answer is not from a framewatch daemon", path), {}};
+  if (!packet) return {false, fmt::format("{}: the answer is not from a framewatch daemon", path)};
   if (packet->channel == CommandPacket::kRefused)
-    return {true, {packet->bytes.begin(), packet->bytes.end()}, {}};
+    return {true, {packet->bytes.begin(), packet->bytes.end()}};
   return {true, "", packet->bytes};
 }
 
@@ -176,16 +173,14 @@ CommandAnswer give_command(const Config& config, const std::string& service,
     else if (errno != ENOENT && errno != ECONNREFUSED)
       return {false,
               fmt::format("{}: {}", path,
-                          errno == EAGAIN ? "the daemon does not answer" : std::strerror(errno)),
-              {}};
+                          errno == EAGAIN ? "the daemon does not answer" : std::strerror(errno))};
     looked += (looked.empty() ? "" : ", ") + path;
   }
-  if (!forbidden.empty()) return {false, forbidden, {}};
+  if (!forbidden.empty()) return {false, forbidden};
   return {false,
           fmt::format("no framewatch {} takes commands here (looked for {}). Start it with this "
                       "configuration, or name the configuration with which it runs",
-                      service, looked),
-          {}};
+                      service, looked)};
 }
 
 }  // namespace framewatch::daemon

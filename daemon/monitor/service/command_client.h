@@ -25,7 +25,6 @@ struct CommandPacket {
 /// Makes the answer that refuses a command. `why` is a sentence.
 CommandPacket refused(const std::string& why);
 
-/// Returns a packet as the bytes to send.
 std::vector<std::uint8_t> packet_bytes(const CommandPacket& packet);
 /// Parses a packet. Returns nullopt if the bytes are not a packet.
 std::optional<CommandPacket> packet_of(std::span<const std::uint8_t> bytes);
@@ -47,11 +46,10 @@ std::string prepare_command_directory(const std::string& directory);
 std::string command_path(const std::string& directory, const Config& config,
                          const std::string& service);
 
-/// The outcome of a command.
 struct CommandAnswer {
-  bool answered = false;            ///< a daemon answered, perhaps with a refusal
-  std::string problem;              ///< why the daemon did not answer or refused; empty on success
-  std::vector<std::uint8_t> bytes;  ///< the message that answers the command
+  bool answered = false;  ///< a daemon answered, perhaps with a refusal
+  std::string problem;    ///< why the daemon did not answer or refused; empty on success
+  std::vector<std::uint8_t> bytes = {};  ///< the message that answers the command
 };
 
 /// Sends a command to the daemon of this configuration (`service`: "run" or "record") and waits at

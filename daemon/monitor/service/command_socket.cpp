@@ -12,7 +12,6 @@
 #include <chrono>
 #include <cstring>
 #include <iterator>
-#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -21,7 +20,6 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/base/process.h"
-#include "daemon/monitor/service/command_client.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -30,8 +30,6 @@ class CommandSocket {
   /// or "record".
   CommandSocket(const Config& config, const std::string& service, Handler handler);
   ~CommandSocket();
-  CommandSocket(const CommandSocket&) = delete;
-  CommandSocket& operator=(const CommandSocket&) = delete;
 
   /// Accepts connections, reads commands and sends answers. Call it several times a second;
   /// `now_us`: steady clock.
@@ -39,7 +37,6 @@ class CommandSocket {
 
   /// Returns why the socket does not listen; empty if it does.
   const std::string& problem() const { return problem_; }
-  /// Returns the path of the socket.
   const std::string& path() const { return path_; }
   std::int64_t malformed() const { return malformed_; }  ///< malformed packets so far
 

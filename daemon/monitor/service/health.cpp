@@ -11,7 +11,6 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "drivers/lcm/message_check.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
@@ -28,10 +27,6 @@ constexpr int kCanActive = 0;
 
 double seconds_between(std::int64_t from_us, std::int64_t to_us) {
   return 1e-6 * static_cast<double>(to_us - from_us);
-}
-
-std::int64_t sum(const std::vector<std::int64_t>& values) {
-  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
 }
 
 void of_process(const service_t& s, const Config& config, std::int64_t now_us,
@@ -98,7 +93,7 @@ void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string
 void of_punctuality(const Heard& heard, std::vector<std::string>& out) {
   if (!heard.first_service) return;
   const auto estimates =
-      static_cast<double>(sum(heard.service->latencies) - sum(heard.first_service->latencies));
+      static_cast<double>(total(heard.service->latencies) - total(heard.first_service->latencies));
   const auto late =
       static_cast<double>(heard.service->deadline_missed - heard.first_service->deadline_missed);
   if (late > 0 && late > kLate_ratio * estimates)
@@ -186,6 +181,10 @@ bool Heard::enough() const {
   return first_status.has_value() || silent_s(*service, service->time_us) > kSilent_s;
 }
 
+std::int64_t total(const std::vector<std::int64_t>& values) {
+  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
+}
+
 double silent_s(const service_t& service, std::int64_t now_us) {
   return seconds_between(service.received_us == 0 ? service.started_us : service.received_us,
                          now_us);
@@ -199,12 +198,12 @@ std::string span_text(double seconds) {
   return fmt::format("{} d {} h", s / 86400, s % 86400 / 3600);
 }
 
-std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t event_id) {
-  if (!heard.acknowledged) return std::nullopt;
-  const std::vector<std::int64_t>& ids = heard.acknowledged->id;
-  const auto at = std::find(ids.begin(), ids.end(), event_id);
-  if (at == ids.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - ids.begin());
+std::optional<std::size_t> acknowledgement_of(const std::optional<acknowledged_t>& acknowledged,
+                                              std::int64_t event_id) {
+  if (!acknowledged) return std::nullopt;
+  const auto at = std::ranges::find(acknowledged->id, event_id);
+  if (at == acknowledged->id.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - acknowledged->id.begin());
 }
 
 event_t raised_event(const service_t& s, std::size_t at) {
@@ -225,7 +224,8 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   std::vector<std::string> out;
   const service_t& s = *heard.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i)
-    if (s.event_severity[i] >= severity::warning && !acknowledgement_of(heard, s.event_id[i]))
+    if (s.event_severity[i] >= severity::warning &&
+        !acknowledgement_of(heard.acknowledged, s.event_id[i]))
       out.push_back(fmt::format("{} ({}, event {})", words(raised_event(s, i)), s.event_kind[i],
                                 s.event_id[i]));
   of_samples(heard, now_us, out);

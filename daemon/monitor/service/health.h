@@ -38,8 +38,9 @@ class Heard : public LatestMessages {
   std::optional<reception_t> first_reception;
 };
 
-/// Returns the index of the event in heard.acknowledged; nullopt if it is not acknowledged.
-std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t event_id);
+/// Returns the index of the event in `acknowledged`; nullopt if it is not acknowledged.
+std::optional<std::size_t> acknowledgement_of(const std::optional<acknowledged_t>& acknowledged,
+                                              std::int64_t event_id);
 
 /// Returns the raised event at index `at` of a service report, which has no numbers of it.
 event_t raised_event(const service_t& service, std::size_t at);
@@ -52,6 +53,8 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
 
 /// Returns the time since the newest sample, or since the start if no sample has come.
 double silent_s(const service_t& service, std::int64_t now_us);
+
+std::int64_t total(const std::vector<std::int64_t>& counters);
 
 /// Returns a duration such as "3 d 4 h", "5 min 10 s" or "2 s".
 std::string span_text(double seconds);

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/service/service_manager.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
-#include <memory>
+#include <sstream>
 
 #include <fmt/core.h>
 #include <systemd/sd-bus.h>
 #include <systemd/sd-daemon.h>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/log.h"
 #include "daemon/base/printable.h"
+#include "daemon/base/signals.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/text_output.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -60,6 +66,20 @@ class Unit {
 
 std::string times(std::int64_t n) {
   return n == 1 ? "once" : fmt::format("{} times", n);
+}
+
+constexpr unsigned kRetry_us = 500'000;
+
+constexpr std::int64_t kStartCountBytes = 4096;
+
+std::string file_of(const std::string& state_path) {
+  return state_path + ".starts";
+}
+
+std::string store(const std::string& state_path, const StartCount& count, bool running) {
+  return drivers::write_text_file(
+      file_of(state_path), fmt::format("starts {}\nunclean_starts {}\nrunning {}\n", count.starts,
+                                       count.unclean_starts, running ? 1 : 0));
 }
 
 }  // namespace
@@ -122,6 +142,49 @@ std::string unit_oddity(const UnitState& s) {
         "it keeps failing: systemd has restarted it {}. Read journalctl -u framewatch",
         times(s.restarts));
   return {};
+}
+
+std::unique_ptr<drivers::LcmProvider> open_lcm_with_retry(const Config& config,
+                                                          const std::string& url,
+                                                          ServiceManager& manager,
+                                                          std::string& error) {
+  const std::string& where = url.empty() ? config.lcm.url : url;
+  for (bool said = false;; said = true) {
+    auto lcm = drivers::open_lcm(where, config.lcm.reception, error);
+    const bool may_come = manager.listens() && where.starts_with("udpm://");
+    if (lcm || !may_come || stop_requested()) return lcm;
+    if (!said) {
+      std::istringstream lines(error);
+      for (std::string line; std::getline(lines, line);) log(LogLevel::warning, line);
+      log(LogLevel::warning, "waiting for LCM, and trying again");
+      manager.ready();
+    }
+    manager.status("waiting for LCM on " + where);
+    manager.alive(steady_clock_us());
+    ::usleep(kRetry_us);
+  }
+}
+
+StartCount count_start(const std::string& state_path, std::string& problem) {
+  StartCount count;
+  std::int64_t running = 0;
+  std::string unread;
+  std::istringstream file(
+      drivers::read_whole_file(file_of(state_path), kStartCountBytes, unread).value_or(""));
+  std::string key;
+  for (std::int64_t value = 0; file >> key >> value;) {
+    if (key == "starts") count.starts = value;
+    if (key == "unclean_starts") count.unclean_starts = value;
+    if (key == "running") running = value;
+  }
+  ++count.starts;
+  if (running != 0) ++count.unclean_starts;
+  problem = store(state_path, count, true);
+  return count;
+}
+
+std::string count_clean_stop(const std::string& state_path, const StartCount& count) {
+  return store(state_path, count, false);
 }
 
 }  // namespace framewatch::daemon

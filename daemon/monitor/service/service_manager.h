@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+
+#include "daemon/config/config.h"
+#include "drivers/lcm/lcm_provider.h"
 
 namespace framewatch::daemon {
 
@@ -50,5 +54,27 @@ std::string unit_text(const UnitState& state);
 
 /// Returns what is wrong with the service and what to do; empty if all is well.
 std::string unit_oddity(const UnitState& state);
+
+/// Opens LCM on `url`, or as configured if that is empty. Under a service manager it retries until
+/// the network is up, because the machine may just have booted. Returns nullptr and sets `error`
+/// when LCM cannot start or the program is stopped.
+std::unique_ptr<drivers::LcmProvider> open_lcm_with_retry(const Config& config,
+                                                          const std::string& url,
+                                                          ServiceManager& manager,
+                                                          std::string& error);
+
+/// Counts the starts of the daemon with one state file, in the file STATE.starts beside it. Shows a
+/// daemon that keeps crashing and restarting.
+struct StartCount {
+  std::int64_t starts = 0;          ///< including this one; 0: not counted
+  std::int64_t unclean_starts = 0;  ///< starts after a run that did not stop cleanly
+};
+
+/// Adds one start to the count beside the state file `state_path`, and returns the new count. An
+/// unreadable or missing count is taken as zero. Sets `problem` to why the count cannot be stored,
+/// or to an empty string.
+StartCount count_start(const std::string& state_path, std::string& problem);
+/// Records that this run stops cleanly. Returns an empty string, or why that could not be stored.
+std::string count_clean_stop(const std::string& state_path, const StartCount& count);
 
 }  // namespace framewatch::daemon

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -20,12 +21,6 @@ constexpr double kSilent_s = 3;
 constexpr int kAllStories = 8, kMaxSwayed = 5;
 constexpr double kStronger = 1.2;  // times the newest shake: gets a separate line
 
-std::string capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
-    text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
-}
-
 std::vector<const Finding*> of_kind(const Known& known, FindingKind kind) {
   std::vector<const Finding*> out;
   for (const Finding& f : known.findings)
@@ -35,7 +30,7 @@ std::vector<const Finding*> of_kind(const Known& known, FindingKind kind) {
 
 /// Appends a full stop unless the text ends with one.
 std::string sentence(std::string text) {
-  text = capital(std::move(text));
+  text = capitalized(std::move(text));
   if (!text.empty() && text.back() != '.') text += '.';
   return text;
 }
@@ -49,12 +44,11 @@ void say_who_knows(const std::vector<const Finding*>& findings, Answer& out) {
     if (f->acknowledged)
       out.more.push_back({f->who.empty()
                               ? fmt::format("{} is acknowledged.", f->place)
-                              : fmt::format("{} is acknowledged by {}.", f->place, f->who),
-                          0, 0});
+                              : fmt::format("{} is acknowledged by {}.", f->place, f->who)});
 }
 
 Answer is_changed(const Known& k) {
-  Answer out{"Is the building changed?", AnswerState::good, {}, {}};
+  Answer out{"Is the building changed?", AnswerState::good};
   const std::vector<const Finding*> changes = of_kind(k, FindingKind::change);
   if (changes.size() == 1) {
     out.line = line_of(*changes.front());
@@ -83,21 +77,21 @@ Answer is_changed(const Known& k) {
                         k.with_baseline, k.watched)
           : fmt::format("No. None of {} elements differs from its baseline.", k.watched);
   if (k.observable < k.with_baseline)
-    out.more.push_back({fmt::format("{} of them have a value now; the others keep their last value "
-                                    "until the building moves more.",
-                                    k.observable),
-                        0, 0});
+    out.more.push_back(
+        {fmt::format("{} of them have a value now; the others keep their last value "
+                     "until the building moves more.",
+                     k.observable)});
   return out;
 }
 
 Answer is_believed(const Known& k, const Config& config) {
-  Answer out{"Can I trust this?", AnswerState::good, {}, {}};
+  Answer out{"Can I trust this?", AnswerState::good};
   const std::vector<const Finding*> doubts = of_kind(k, FindingKind::belief);
   std::set<std::string> dead;
   for (const Finding* f : doubts)
     if (f->of_channel) dead.insert(f->place);
   for (const Finding* f : doubts) out.more.push_back(line_of(*f));
-  if (!k.same_config) out.more.push_back({"The estimator runs with another configuration.", 0, 0});
+  if (!k.same_config) out.more.push_back({"The estimator runs with another configuration."});
   if (!k.samples || k.silent_s > kSilent_s) {
     out.state = k.samples ? AnswerState::bad : AnswerState::wait;
     out.line.text = k.samples ? fmt::format("No: no samples for {}. The values shown are old.",
@@ -110,7 +104,7 @@ Answer is_believed(const Known& k, const Config& config) {
   } else if (!out.more.empty()) {
     out.state = AnswerState::look;
     const bool one = doubts.size() == 1 && k.same_config;
-    out.line = one ? out.more.front() : AnswerLine{"Only in part.", 0, 0};
+    out.line = one ? out.more.front() : AnswerLine{"Only in part."};
     if (one) out.line.text = "Only in part. " + out.line.text;
     if (one) out.more.clear();
   } else if (!k.estimates) {
@@ -127,7 +121,7 @@ Answer is_believed(const Known& k, const Config& config) {
   }
   if (!dead.empty()) {
     const std::size_t all = config.pipeline.axes.size();
-    out.more.push_back({fmt::format("{} of {} sensors are good.", all - dead.size(), all), 0, 0});
+    out.more.push_back({fmt::format("{} of {} sensors are good.", all - dead.size(), all)});
   }
   say_who_knows(doubts, out);
   return out;
@@ -163,14 +157,12 @@ void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
       const estimator::PeakDrift peak = peak_drift(shake.peak, s, story);
       return peak.frame < 0 ? -1 : peak.ratio;
     };
-    std::stable_sort(stories.begin(), stories.end(),
-                     [&](int a, int b) { return swayed(a) > swayed(b); });
+    std::ranges::stable_sort(stories, std::greater<>(), swayed);
     stories.resize(kMaxSwayed);
   }
-  for (const int story : stories) out.more.push_back({drift_line(k, s, story), 0, 0});
+  for (const int story : stories) out.more.push_back({drift_line(k, s, story)});
   if (s.stories > kAllStories)
-    out.more.push_back(
-        {fmt::format("The other {} stories swayed less.", s.stories - kMaxSwayed), 0, 0});
+    out.more.push_back({fmt::format("The other {} stories swayed less.", s.stories - kMaxSwayed)});
 }
 
 std::string accel_words(const Shake& shake, const Config& config) {
@@ -211,7 +203,7 @@ void name_report(const Known& k, Answer& out) {
   out.more.insert(out.more.begin(), std::move(line));
   if (r.placard.empty()) return;
   const AnswerLine placard{
-      fmt::format("Placard: {}. {} {}", r.placard, r.placard_reason, placard_caution()), 0, 0};
+      fmt::format("Placard: {}. {} {}", r.placard, r.placard_reason, placard_caution())};
   out.more.insert(out.more.begin(), placard);
   if (same && r.placard == "unsafe") out.state = AnswerState::bad;
   if (same && r.placard != "inspected" && out.state == AnswerState::good)
@@ -219,7 +211,7 @@ void name_report(const Known& k, Answer& out) {
 }
 
 Answer went_through(const Known& k, const Config& config) {
-  Answer out{"What did it just go through?", AnswerState::good, {}, {}};
+  Answer out{"What did it just go through?", AnswerState::good};
   if (k.newest == nullptr) {
     out.state = k.followed_since_us == 0 ? AnswerState::wait : AnswerState::good;
     out.line = {k.followed_since_us == 0
@@ -243,7 +235,7 @@ Answer went_through(const Known& k, const Config& config) {
       shake.from_us, over ? shake.to_us : 0};
   out.state = over ? AnswerState::good : AnswerState::look;
   add_stories(k, s, out);
-  out.more.push_back({accel_words(shake, config), 0, 0});
+  out.more.push_back({accel_words(shake, config)});
   if (k.strongest != nullptr && largest_drift_ratio(k.strongest->peak, s) > kStronger * drift)
     out.more.push_back({fmt::format("The strongest so far: {} of a story's height, {}.",
                                     drift_words(largest_drift_ratio(k.strongest->peak, s)),
@@ -254,7 +246,7 @@ Answer went_through(const Known& k, const Config& config) {
 }
 
 Answer to_do(const Known& k) {
-  Answer out{"What should I do?", AnswerState::good, {}, {}};
+  Answer out{"What should I do?", AnswerState::good};
   std::vector<const Finding*> open;
   for (const Finding& f : k.findings)
     if (!f.acknowledged && f.severity >= severity::warning) open.push_back(&f);
@@ -278,8 +270,8 @@ Answer to_do(const Known& k) {
     out.state = k.samples ? AnswerState::good : AnswerState::wait;
     return out;
   }
-  out.line.text = capital(steps.front());
-  for (std::size_t i = 1; i < steps.size(); ++i) out.more.push_back({capital(steps[i]), 0, 0});
+  out.line.text = capitalized(steps.front());
+  for (std::size_t i = 1; i < steps.size(); ++i) out.more.push_back({capitalized(steps[i])});
   out.state = !open.empty() && open.front()->kind == FindingKind::change ? AnswerState::bad
                                                                          : AnswerState::look;
   return out;

@@ -50,8 +50,8 @@ struct AnswerLine {
 struct Answer {
   std::string question;
   AnswerState state = AnswerState::wait;
-  AnswerLine line;
-  std::vector<AnswerLine> more;
+  AnswerLine line = {};
+  std::vector<AnswerLine> more = {};
 };
 
 /// Returns the four answers at the top of the page: whether the building changed, whether the

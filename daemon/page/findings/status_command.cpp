@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/numbers.h"
 #include "daemon/base/printable.h"
@@ -23,16 +22,11 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/sections.h"
 #include "daemon/monitor/service/health.h"
-#include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/findings/finding.h"
 #include "drivers/lcm/lcm_source.h"
 
 namespace framewatch::daemon {
 namespace {
-
-std::int64_t sum_of(const std::vector<std::int64_t>& values) {
-  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
-}
 
 /// Returns the output of `framewatch status --json`. odd: the problems found. Requires
 /// heard.service. now_us: host clock.
@@ -58,8 +52,8 @@ std::string status_json(const Heard& h, const Config& config, const std::vector<
   if (h.status) {
     out["windows"] = h.status->windows;
     out["latency_s"] = h.status->latency_s;
-    out["lost"] = sum_of(h.status->lost);
-    out["rejected"] = sum_of(h.status->rejected);
+    out["lost"] = total(h.status->lost);
+    out["rejected"] = total(h.status->rejected);
   }
   if (h.reception)
     out["dropped"] = {{"elsewhere", h.reception->datagrams_elsewhere},
@@ -96,7 +90,7 @@ std::string status_json(const Heard& h, const Config& config, const std::vector<
                       {"restarts", unit->restarts}};
   out["events"] = nlohmann::json::array();
   for (std::size_t i = 0; i < s.event_id.size(); ++i) {
-    const auto at = acknowledgement_of(h, s.event_id[i]);
+    const auto at = acknowledgement_of(h.acknowledged, s.event_id[i]);
     nlohmann::json known;
     if (at)
       known = {{"time_us", h.acknowledged->since_us[*at]},
@@ -123,10 +117,6 @@ std::optional<double> rate(const Heard& h, std::int64_t first, std::int64_t last
       h.first_status ? 1e-6 * static_cast<double>(h.status->time_us - h.first_status->time_us) : 0;
   if (!(seconds > 0)) return std::nullopt;
   return static_cast<double>(last - first) / seconds;
-}
-
-std::int64_t total(const std::vector<std::int64_t>& values) {
-  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
 }
 
 void line(const char* what, const std::string& text) {
@@ -256,7 +246,7 @@ void print_reception(const Heard& h) {
 void print_known(const Heard& h, const Config& config, std::int64_t now_us) {
   const service_t& s = *h.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i) {
-    const auto at = acknowledgement_of(h, s.event_id[i]);
+    const auto at = acknowledgement_of(h.acknowledged, s.event_id[i]);
     if (!at) continue;
     const acknowledged_t& a = *h.acknowledged;
     const std::string comment = a.comment[*at].empty() ? "" : ": " + a.comment[*at];
@@ -335,10 +325,7 @@ int status_command(const StatusArguments& a) {
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
   std::string error;
   const auto lcm = drivers::open_lcm(url, config->lcm.reception, error);
-  if (!lcm) {
-    fmt::print(stderr, "framewatch status: {}\n", error);
-    return kUnreachable;
-  }
+  if (!lcm) return refuse("status", error);
   Heard heard(*config);
   drivers::LcmSource source(
       *lcm, heard.channels(), config->lcm.queue_capacity,

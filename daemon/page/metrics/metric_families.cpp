@@ -3,20 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
-#include <utility>
 
 #include <prometheus/text_serializer.h>
-
-#include <framewatch/action_status_t.hpp>
-#include <framewatch/can_status_t.hpp>
-#include <framewatch/event_t.hpp>
-#include <framewatch/gap_t.hpp>
-#include <framewatch/history_status_t.hpp>
-#include <framewatch/parameter_table_t.hpp>
-#include <framewatch/watch_t.hpp>
-#include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/base/printable.h"
 #include "daemon/monitor/events/event_messages.h"

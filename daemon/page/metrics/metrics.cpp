@@ -2,6 +2,7 @@
 #include "daemon/page/metrics/metrics.h"
 
 #include "daemon/base/process.h"
+#include "daemon/monitor/service/health.h"
 #include "daemon/page/metrics/metric_families.h"
 
 namespace framewatch::daemon {
@@ -53,14 +54,8 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   out.gauge("up", "1: framewatch run has published in the last 5 s.").value(fresh.service ? 1 : 0);
   if (fresh.service) {
     add_service(out, *fresh.service);
-    for (std::size_t i = 0; i < fresh.service->event_id.size(); ++i) {
-      event_t e{};
-      e.id = fresh.service->event_id[i];
-      e.state = 1;
-      e.severity = fresh.service->event_severity[i];
-      e.kind = fresh.service->event_kind[i];
-      raised.note(e);
-    }
+    for (std::size_t i = 0; i < fresh.service->event_id.size(); ++i)
+      raised.note(raised_event(*fresh.service, i));
   }
   if (fresh.status) add_status(out, *fresh.status);
   if (fresh.parameters && fresh.estimate) add_estimate(out, *fresh.parameters, *fresh.estimate);

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include <framewatch/event_t.hpp>
 
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/estimation/publisher.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "daemon/page/view/page_json.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/service/health.h"
 #include "daemon/page/view/page_json.h"
 
@@ -78,15 +77,15 @@ std::vector<std::string> PageAlarms::acknowledged(acknowledged_t news) {
 
 /// Returns the raised events of the page if all events were acknowledged since the last message.
 std::set<std::int64_t> PageAlarms::acknowledge_own(const acknowledged_t& news) {
-  const auto all = std::find(news.id.begin(), news.id.end(), kAllEvents);
-  if (all == news.id.end()) return {};
-  const auto at = static_cast<std::size_t>(all - news.id.begin());
-  const std::int64_t before_us = std::exchange(all_acknowledged_us_, news.since_us[at]);
+  const auto all = acknowledgement_of(news, kAllEvents);
+  if (!all) return {};
+  const std::int64_t since_us = news.since_us[*all];
+  const std::int64_t before_us = std::exchange(all_acknowledged_us_, since_us);
   // The first message may be older than the page's events.
-  if (!acknowledged_ || before_us == news.since_us[at]) return {};
+  if (!acknowledged_ || before_us == since_us) return {};
   for (const std::int64_t id : own_)
     if (events_.at(id).state != event_state::cleared)
-      acknowledged_here_[id] = {news.since_us[at], news.who[at], news.comment[at]};
+      acknowledged_here_[id] = {since_us, news.who[*all], news.comment[*all]};
   return own_;
 }
 
@@ -108,13 +107,8 @@ std::vector<std::string> PageAlarms::all() const {
 
 std::optional<Acknowledgement> PageAlarms::acknowledgement(const event_t& e) const {
   if (e.state == event_state::cleared) return std::nullopt;
-  if (acknowledged_) {
-    const std::vector<std::int64_t>& ids = acknowledged_->id;
-    if (const auto found = std::find(ids.begin(), ids.end(), e.id); found != ids.end()) {
-      const auto at = static_cast<std::size_t>(found - ids.begin());
-      return Acknowledgement{0, acknowledged_->who[at], acknowledged_->comment[at]};
-    }
-  }
+  if (const auto at = acknowledgement_of(acknowledged_, e.id))
+    return Acknowledgement{0, acknowledged_->who[*at], acknowledged_->comment[*at]};
   const auto here = acknowledged_here_.find(e.id);
   return here == acknowledged_here_.end() ? std::nullopt : std::optional(here->second);
 }

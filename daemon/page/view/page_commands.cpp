@@ -6,16 +6,9 @@
 namespace framewatch::daemon {
 
 PageCommands::PageCommands(Give give, Failed failed)
-    : give_(std::move(give)), failed_(std::move(failed)), thread_([this] { work(); }) {}
-
-PageCommands::~PageCommands() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stopping_ = true;
-  }
-  news_.notify_one();
-  thread_.join();
-}
+    : give_(std::move(give)),
+      failed_(std::move(failed)),
+      thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 bool PageCommands::add(PageCommand command) {
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -25,13 +18,13 @@ bool PageCommands::add(PageCommand command) {
   return true;
 }
 
-void PageCommands::work() {
+void PageCommands::work(const std::stop_token& stop) {
   for (;;) {
     PageCommand command;
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      news_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
-      if (stopping_) return;
+      news_.wait(lock, stop, [this] { return !waiting_.empty(); });
+      if (stop.stop_requested()) return;
       command = std::move(waiting_.front());
       waiting_.pop_front();
     }

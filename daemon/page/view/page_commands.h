@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -31,23 +32,19 @@ class PageCommands {
   using Failed = std::function<void(const PageCommand&, const std::string& problem)>;
 
   PageCommands(Give give, Failed failed);
-  ~PageCommands();  ///< waits for the command that is being sent
-  PageCommands(const PageCommands&) = delete;
-  PageCommands& operator=(const PageCommands&) = delete;
 
   /// Queues a command. Returns false when kMax commands wait.
   bool add(PageCommand command);
 
  private:
-  void work();
+  void work(const std::stop_token& stop);
 
   Give give_;
   Failed failed_;
   std::mutex mutex_;
-  std::condition_variable news_;
+  std::condition_variable_any news_;
   std::deque<PageCommand> waiting_;
-  bool stopping_ = false;
-  std::thread thread_;
+  std::jthread thread_;  ///< last: it uses the members above. At the end it finishes its command
 };
 
 }  // namespace framewatch::daemon

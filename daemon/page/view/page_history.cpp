@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/base/json.h"
+#include "daemon/monitor/estimates/estimate_table.h"
 #include "daemon/page/view/page_json.h"
 #include "estimator/numeric/nan.h"
 
@@ -44,6 +45,13 @@ std::string MotionRows::take() {
 }
 
 using estimator::kNaN;
+
+void clear_values(window_estimate_t& e, std::size_t parameters) {
+  for (auto* list : {&e.value, &e.std_error}) list->assign(parameters, kNaN);
+  for (const BoxColumn& column : kBoxColumns) (e.*column.values).assign(parameters, kNaN);
+  e.outliers.assign(parameters, 0);
+  e.boxplot_count.assign(parameters, 0);
+}
 
 PageHistory::PageHistory(const estimator::PipelineConfig& config) : config_(config) {}
 
@@ -101,11 +109,7 @@ void PageHistory::keep_last(const window_estimate_t& e) {
   const std::size_t n = e.value.size();
   if (last_us_.size() != n) {
     last_ = {};
-    for (auto* list : {&last_.value, &last_.std_error, &last_.q1, &last_.median, &last_.q3,
-                       &last_.whisker_low, &last_.whisker_high})
-      list->assign(n, kNaN);
-    last_.outliers.assign(n, 0);
-    last_.boxplot_count.assign(n, 0);
+    clear_values(last_, n);
     last_us_.assign(n, 0);
     now_.assign(n, false);
   }
@@ -128,11 +132,7 @@ void PageHistory::keep_last(const window_estimate_t& e) {
   last_.boxplots = e.boxplots;
   for (std::size_t p = 0; p < n; ++p) {
     if (!now_[p] || e.boxplot_count[p] == 0) continue;  // keeps the last full box
-    last_.q1[p] = e.q1[p];
-    last_.median[p] = e.median[p];
-    last_.q3[p] = e.q3[p];
-    last_.whisker_low[p] = e.whisker_low[p];
-    last_.whisker_high[p] = e.whisker_high[p];
+    for (const BoxColumn& column : kBoxColumns) (last_.*column.values)[p] = (e.*column.values)[p];
     last_.outliers[p] = e.outliers[p];
     last_.boxplot_count[p] = e.boxplot_count[p];
   }

@@ -42,6 +42,9 @@ class MotionRows {
   std::size_t count_ = 0, left_out_ = 0;  ///< left_out_: ever
 };
 
+/// Empties the values and boxplots of an estimate and makes room for those of `parameters`.
+void clear_values(window_estimate_t& estimate, std::size_t parameters);
+
 /// Holds the last minutes for a page that is opened late: two windows a second, the newest seconds
 /// of motion, and the newest value and boxplot of each parameter. Keeps kMost_s of windows, fewer
 /// when the model has many parameters.

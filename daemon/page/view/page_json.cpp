@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -76,12 +75,10 @@ std::string status_json(const status_t& s, const std::string& config_sha256) {
 }
 
 std::string gap_json(const gap_t& g) {
-  Json names = Json::array();
-  for (const std::string& name : g.name) names.push_back(name);
   return fmt::format(
       R"({{"start_us":{},"end_us":{},"overall":{},"noise_floor":{},"name":{},"nrmse":{},"floor":{}}})",
       g.window_start_us, g.window_end_us, json_value_text(g.overall_nrmse),
-      json_value_text(g.noise_floor), json_line(names), json_list(g.nrmse, "{:.4g}"),
+      json_value_text(g.noise_floor), json_line(g.name), json_list(g.nrmse, "{:.4g}"),
       json_list(g.floor, "{:.4g}"));
 }
 

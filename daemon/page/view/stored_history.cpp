@@ -19,7 +19,6 @@ namespace {
 using estimator::kNaN;
 
 constexpr std::int32_t kObservable = 0, kQuiet = 2;  // window_estimate_t::reason
-constexpr std::int64_t kEver_us = 2'000'000'000'000'000'000;
 
 /// Returns an estimate without any value.
 window_estimate_t empty_estimate(std::size_t parameters, std::int64_t end_us) {
@@ -29,11 +28,7 @@ window_estimate_t empty_estimate(std::size_t parameters, std::int64_t end_us) {
   e.residual_ratio = kNaN;
   e.boxplots = 1;
   e.reason.assign(parameters, kQuiet);
-  for (auto* list :
-       {&e.value, &e.std_error, &e.q1, &e.median, &e.q3, &e.whisker_low, &e.whisker_high})
-    list->assign(parameters, kNaN);
-  e.outliers.assign(parameters, 0);
-  e.boxplot_count.assign(parameters, 0);
+  clear_values(e, parameters);
   return e;
 }
 
@@ -91,17 +86,12 @@ void read_samples(const Config& config, std::int64_t newest_us, StoredHistory& o
   const std::int64_t from_us = newest_us - static_cast<std::int64_t>(1e6 * most_s);
   std::vector<int> axis_of;  // by the log's channel; -1: not in this configuration
   const RawVisitor visitor{
-      [&](const std::vector<std::string>& names, double) {
-        axis_of.assign(names.size(), -1);
-        for (std::size_t i = 0; i < names.size(); ++i)
-          for (std::size_t a = 0; a < axes.size(); ++a)
-            if (axes[a].name == names[i]) axis_of[i] = static_cast<int>(a);
-      },
+      [&](const std::vector<std::string>& names, double) { axis_of = axes_of(names, axes); },
       [&](const RawCount& c) {
         const bool full = out.samples.size() >= 2 * StoredHistory::kMaxSamples;
         if (full || c.count == drivers::kNoCount || axis_of[c.channel] < 0) return;
-        out.samples.push_back({estimator::from_microseconds(c.time_us), axis_of[c.channel],
-                               c.count * c.resolution_mps2});
+        out.samples.push_back(
+            {estimator::from_microseconds(c.time_us), axis_of[c.channel], c.accel_mps2()});
       }};
   std::string problem;
   if (!read_raw_history(raw_logs_between(config.history->directory, from_us, kEver_us), from_us,

@@ -14,7 +14,6 @@
 #include "daemon/base/log.h"
 #include "daemon/base/signals.h"
 #include "daemon/config/sections/config_problems.h"
-#include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/metrics/metrics.h"
 #include "daemon/page/view/live_view.h"
@@ -30,13 +29,6 @@ using Clock = std::chrono::steady_clock;
 constexpr int kPoll_ms = 10;
 constexpr std::chrono::milliseconds kFlush{50};
 
-/// Returns the first line of the token file. Returns nullopt and sets `error` if it is unreadable.
-std::optional<std::string> read_token(const std::string& path, std::string& error) {
-  auto text = read_text_file(path, error);
-  if (text) text->resize(std::min(text->size(), text->find_first_of("\r\n")));
-  return text;
-}
-
 /// Returns the settings; prints the problems and returns nullopt when they are wrong.
 std::optional<WebSettings> web_settings(const ServeArguments& a) {
   bool good = true;
@@ -45,12 +37,12 @@ std::optional<WebSettings> web_settings(const ServeArguments& a) {
   settings.connections.viewers_per_address = a.viewers_per_address;
   std::string error;
   if (!a.token_file.empty()) {
-    const auto token = read_token(a.token_file, error);
-    if (!token) {
+    const auto text = read_text_file(a.token_file, error);
+    if (!text) {
       fmt::print(stderr, "framewatch serve: {}: {}\n", a.token_file, error);
       good = false;
     }
-    settings.token = token.value_or("");
+    settings.token = text ? text->substr(0, text->find_first_of("\r\n")) : "";
   }
   for (const std::string& problem : problems(settings)) {
     fmt::print(stderr, "framewatch serve: {}\n", problem);
@@ -78,10 +70,7 @@ int serve(const ServeArguments& a) {
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
   const auto lcm = open_lcm_with_retry(*config, a.url, manager, error);
   if (!lcm && stop_requested()) return 0;
-  if (!lcm) {
-    fmt::print(stderr, "framewatch serve: {}\n", error);
-    return kBadInput;
-  }
+  if (!lcm) return refuse("serve", error);
   LiveView view(
       *config,
       [&](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
@@ -108,10 +97,7 @@ int serve(const ServeArguments& a) {
   }
   WebServer server(*settings, view);
   const int socket = listen_on(settings->address, settings->port, error);
-  if (socket < 0 || !server.start(socket, error)) {
-    fmt::print(stderr, "framewatch serve: {}\n", error);
-    return kBadInput;
-  }
+  if (socket < 0 || !server.start(socket, error)) return refuse("serve", error);
   // The operator's token must not go into logs.
   fmt::print("{}\n", page_address(*settings, server.port(),
                                   a.token_file.empty() ? settings->token : std::string()));
@@ -122,10 +108,7 @@ int serve(const ServeArguments& a) {
   RateLimitedLog failures(LogLevel::error);
   for (Clock::time_point next = Clock::now(); !stop_requested();) {
     if (!source.handle(kPoll_ms) && !stop_requested())
-      failures(
-          std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
-              .count(),
-          "LCM failed to deliver");
+      failures(steady_clock_us(), "LCM failed to deliver");
     if (Clock::now() < next) continue;
     next = std::max(next + kFlush, Clock::now());
     view.flush();

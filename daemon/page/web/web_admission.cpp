@@ -75,23 +75,14 @@ Admission admit(const WebSettings& s, const WebRequest& r) {
 }
 
 Refusal refusal_of(Admission admission) {
-  switch (admission) {
-    case Admission::malformed:
-      return {400, "malformed request: no path, or several Host headers"};
-    case Admission::has_body:
-      return {413, "a request must not have a body"};
-    case Admission::wrong_host:
-      return {421, "this host name is not served: add it with --host"};
-    case Admission::wrong_method:
-      return {405, "only GET"};
-    case Admission::wrong_origin:
-      return {403, "refused: the request comes from another page"};
-    case Admission::no_token:
-      return {403, "open the address with its token: /?token=..."};
-    case Admission::served:
-      break;
-  }
-  return {200, ""};
+  constexpr Refusal kRefusals[] = {{200, ""},
+                                   {421, "this host name is not served: add it with --host"},
+                                   {403, "open the address with its token: /?token=..."},
+                                   {405, "only GET"},
+                                   {403, "refused: the request comes from another page"},
+                                   {400, "malformed request: no path, or several Host headers"},
+                                   {413, "a request must not have a body"}};
+  return kRefusals[static_cast<std::size_t>(admission)];
 }
 
 }  // namespace framewatch::daemon

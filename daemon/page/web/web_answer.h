@@ -3,7 +3,6 @@
 
 #include <microhttpd.h>
 
-#include <cstddef>
 #include <string>
 
 #include "daemon/page/web/web_admission.h"

@@ -2,8 +2,6 @@
 #include "daemon/page/web/web_server.h"
 
 #include <microhttpd.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -17,7 +15,6 @@
 
 #include "daemon/base/served_file.h"
 #include "daemon/page/view/live_view.h"
-#include "daemon/page/web/web_admission.h"
 #include "daemon/page/web/web_answer.h"
 #include "daemon/page/web/web_files.h"
 #include "daemon/page/web/web_sessions.h"
@@ -33,15 +30,6 @@ constexpr const char* kSessionPath = "/session/";
 constexpr const char* kEventReportPath = "/event-report/";
 constexpr std::size_t kBlock = 32768;
 constexpr int kOtherDescriptors = 64;  // LCM, the history's files, logs
-
-int port_of(int socket) {
-  sockaddr_storage address{};
-  socklen_t size = sizeof address;
-  if (::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
-  return ntohs(address.ss_family == AF_INET6
-                   ? reinterpret_cast<const sockaddr_in6*>(&address)->sin6_port
-                   : reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
-}
 
 const char* type_of(const std::string& path) {
   return path.ends_with(".js")    ? "text/javascript; charset=utf-8"
@@ -78,7 +66,6 @@ class WebServer::Implementation {
       ::close(socket);
       return false;
     }
-    port_ = port_of(socket);
     return true;
   }
 
@@ -257,7 +244,6 @@ class WebServer::Implementation {
   LiveView& view_;
   ConnectionGuard guard_;
   MHD_Daemon* daemon_ = nullptr;
-  int port_ = 0;
   std::mutex mutex_;
   std::set<MHD_Connection*> waiting_;  ///< suspended until new events come
   std::atomic<bool> stopping_ = false;

@@ -18,8 +18,6 @@ class WebServer {
   /// `view` must outlive this.
   WebServer(const WebSettings& settings, LiveView& view);
   ~WebServer();
-  WebServer(const WebServer&) = delete;
-  WebServer& operator=(const WebServer&) = delete;
 
   /// Serves on `socket` (from listen_on()) and takes ownership of it. Returns false and sets
   /// `error` on failure.

@@ -35,12 +35,10 @@ class ConnectionGuard {
  public:
   explicit ConnectionGuard(const ConnectionLimits& limits) : connections_(limits) {}
 
+  // As in WebConnections.
   void opened(int socket);
-  /// The request is complete.
   void asked(int socket);
-  /// An answer of `bytes` waits to be read.
   void answered(int socket, std::size_t bytes);
-  /// The connection becomes a viewer of the event stream. Returns false when no place is free.
   [[nodiscard]] bool watches(int socket);
   /// The socket is about to be closed.
   void closed(int socket);

@@ -116,10 +116,16 @@ TEST(Publisher, TableAndStatusSayWhatTheNumbersMean) {
   });
   const estimator::Pipeline pipeline(config.pipeline);
   publisher.parameters(42, pipeline);
-  StatusCounts counts{7, 8, 9, 10, {}};
-  for (std::size_t i = 0; i < config.pipeline.axes.size(); ++i)
-    counts.axes.push_back({100, 1, 2, 3, static_cast<std::int64_t>(i)});
-  publisher.status(43, counts, {5, 6, 0.25});
+  framewatch::status_t counts{};
+  counts.time_us = 43;
+  counts.windows = 7;
+  counts.rejected_messages = 10;
+  for (auto* column : {&counts.received, &counts.lost, &counts.late, &counts.repaired,
+                       &counts.rejected, &counts.stuck, &counts.clipped})
+    for (std::size_t i = 0; i < config.pipeline.axes.size(); ++i)
+      column->push_back(static_cast<std::int64_t>(i));
+  counts.noise_mps2_per_rthz.resize(config.pipeline.axes.size());
+  publisher.status(counts);
 
   ASSERT_EQ(sent.size(), 2u);
   EXPECT_EQ(sent[0].channel, "SITE_PARAMETERS");
@@ -138,9 +144,7 @@ TEST(Publisher, TableAndStatusSayWhatTheNumbersMean) {
   EXPECT_EQ(status.time_us, 43);
   EXPECT_EQ(status.windows, 7);
   EXPECT_EQ(status.rejected_messages, 10);
-  EXPECT_EQ(status.queue_high_water, 5);
-  EXPECT_EQ(status.queue_dropped, 6);
-  EXPECT_EQ(status.latency_s, 0.25);
+  EXPECT_EQ(status.config_sha256, config.sha256);
   ASSERT_EQ(status.channels, static_cast<std::int32_t>(config.pipeline.axes.size()));
   EXPECT_EQ(status.name[1], config.pipeline.axes[1].name);
   EXPECT_EQ(status.rejected[1], 1);

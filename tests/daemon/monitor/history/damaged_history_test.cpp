@@ -11,7 +11,6 @@
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history.h"
 #include "daemon/monitor/history/history_command.h"
-#include "daemon/monitor/history/history_report.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "drivers/files/encoded.h"
 #include "tests/daemon/monitor/history/summary_program.h"

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "daemon/base/sqlite_file.h"
+#include "daemon/monitor/history/history.h"
 #include "daemon/monitor/history/history_files.h"
-#include "daemon/monitor/history/history_report.h"
 #include "daemon/monitor/history/history_schema.h"
 #include "daemon/monitor/live/run_command.h"
 #include "drivers/lcm/lcm_log.h"

@@ -21,7 +21,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/live/live_estimation.h"
-#include "daemon/monitor/service/start_count.h"
+#include "daemon/monitor/service/service_manager.h"
 #include "drivers/files/encoded.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/state/archive.h"
