@@ -105,10 +105,9 @@ void free_top(const Config& config, const LayoutOutlook& outlook, std::vector<st
   const int stories = config.pipeline.structure.stories;
   if (outlook.floors.empty() || outlook.floors.back() >= stories) return;
   out.push_back(fmt::format(
-      "no channel on the roof, floor {}: what is above floor {} is judged by what it "
-      "does to that floor alone, and where the ground moves the first mode only, its "
-      "stiffness has errors of 15 % and its damping none that means anything; a channel "
-      "on the roof tells most",
+      "no channel on the roof, floor {}: what is above floor {} is judged by what it does to that "
+      "floor alone, and where the ground moves the first mode only, its stiffness has errors of 15 "
+      "% and its damping none that means anything; a channel on the roof tells most",
       stories, outlook.floors.back()));
 }
 
@@ -236,8 +235,7 @@ std::string layout_text(const LayoutOutlook& o, const estimator::Structure& s) {
   if (o.least_seen_loss < kNeverSeen)
     out += fmt::format(
         "            by that noise alone, a story that loses {} of its stiffness is seen wherever "
-        "it "
-        "is; story {} needs so much\n",
+        "it is; story {} needs so much\n",
         percent(o.least_seen_loss), o.weakest_story);
   else
     out += fmt::format("            no loss of stiffness in story {} is seen by these sensors\n",

@@ -232,12 +232,11 @@ void add_clock_problems(const std::string& path, const estimator::Plant& plant,
   for (const auto& [key, offsets] : groups) {
     double mean = 0;
     for (const ClockOffset& o : offsets) mean += o.seconds / static_cast<double>(offsets.size());
-    problems.push_back(
-        fmt::format("{}: clocks apart: {} read {:.2f} s {} than {} in motion so slow that a "
-                    "building follows its base; measure again with one clock, or set delay_s of "
-                    "the later ones",
-                    path, names_of(plant, offsets), std::abs(mean), mean > 0 ? "later" : "earlier",
-                    plant.axes[static_cast<std::size_t>(key.first)].name));
+    problems.push_back(fmt::format(
+        "{}: clocks apart: {} read {:.2f} s {} than {} in motion so slow that a building follows "
+        "its base; measure again with one clock, or set delay_s of the later ones",
+        path, names_of(plant, offsets), std::abs(mean), mean > 0 ? "later" : "earlier",
+        plant.axes[static_cast<std::size_t>(key.first)].name));
   }
 }
 

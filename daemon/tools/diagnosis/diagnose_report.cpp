@@ -57,11 +57,10 @@ std::string gap_section(const DiagnoseOutput& o) {
     plot.add(a);
     plots.push_back(plot.svg());
   }
-  const std::string fitted =
-      o.diagnosis.after_of_all
-          ? "The training records do not determine the effects: the gap after is of a model fitted "
-            "to all records."
-          : "Both models were fitted to the training records alone.";
+  const std::string fitted = o.diagnosis.after_of_all
+                                 ? "The training records do not determine the effects: the gap "
+                                   "after is of a model fitted to all records."
+                                 : "Both models were fitted to the training records alone.";
   return "<h2>Gap between simulation and measurement</h2>\n"
          "<p>Free run from the measured " +
          driver_words(o) + " alone, as a share of " + html_text(denominator_words(o)) + ". " +
@@ -203,9 +202,8 @@ std::string where_section(const DiagnoseOutput& o) {
         {place(o, w.place), fmt::format("{:.3f}", w.ratio), when(o, w), band(w), peak(w)});
   return fmt::format(
              "<h2>Where</h2>\n<p>Each place in turn may have an arbitrary force. At the right "
-             "place "
-             "the rest of a linear building then fits: the rest that is not explained falls from "
-             "{:.3g} times the sensors' noise to 1.</p>\n",
+             "place the rest of a linear building then fits: the rest that is not explained falls "
+             "from {:.3g} times the sensors' noise to 1.</p>\n",
              o.diagnosis.ratio_before) +
          html_figure(
              where_map(o.plant.structure, o.plant.axes, o.diagnosis.map, o.diagnosis.ratio_before),

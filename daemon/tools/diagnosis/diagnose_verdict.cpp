@@ -241,8 +241,7 @@ std::string leading_sentence(const DiagnoseOutput& o) {
   found.chosen = best.trial;
   return fmt::format(
       "The best of the known effects is {}: with it the held-out gap falls from {} to {}. It is "
-      "not "
-      "established, because it leaves more unexplained than it should.",
+      "not established, because it leaves more unexplained than it should.",
       effect_words(o, found), gap_percent(best.before), gap_percent(best.after));
 }
 
@@ -253,10 +252,9 @@ std::string verdict_sentence(const DiagnoseOutput& o) {
     missing += (missing.empty() ? "" : ", and ") + effect_words(o, f);
   switch (d.verdict) {
     case estimator::Verdict::adequate:
-      return missing.empty()
-                 ? "Nothing is missing: the model explains the measurement as well as the sensors' "
-                   "noise allows."
-                 : "The model explains the measurement with " + missing + ".";
+      return missing.empty() ? "Nothing is missing: the model explains the measurement as well as "
+                               "the sensors' noise allows."
+                             : "The model explains the measurement with " + missing + ".";
     case estimator::Verdict::explained:
       return "The model lacks " + missing + "; with it the measurement is explained.";
     case estimator::Verdict::partly_explained:

@@ -128,8 +128,7 @@ std::string design_section(const BuildingPlan& p) {
       "[structure.design]\n",
       p.stiffness_from,
       p.structure.panels() > 0 ? "\n# As long as they are shares, check finds the plan symmetric: "
-                                 "no finding about the "
-                                 "building."
+                                 "no finding about the building."
                                : "");
   if (!p.story_kx_npm.empty())
     out += fmt::format("kx_npm = {}  # N/m of each frame that moves along x\n",
@@ -194,13 +193,11 @@ std::string building_toml(const BuildingPlan& p) {
     out +=
         "\n# The accelerometers, where the record's headers say they are: azimuth_deg is where the "
         "positive\n# axis points, x_m and y_m are from the first frames; `framewatch check` says "
-        "what "
-        "they show.\n# noise_mps2_per_rthz (data sheet) is worth giving.\n";
+        "what they show.\n# noise_mps2_per_rthz (data sheet) is worth giving.\n";
   else
     out +=
         "\n# The accelerometers: every frame has one on every floor, the base one in each "
-        "direction. "
-        "An\n"
+        "direction. An\n"
         "# axis mounted backwards has polarity = -1; noise_mps2_per_rthz (data sheet) is worth "
         "giving.\n";
   const auto lcm = std::find_if(p.channels.begin(), p.channels.end(), [](const auto& channel) {

@@ -79,14 +79,13 @@ class StationPlacing {
     if (!by_header)
       reading_.open.push_back(
           {"channel",
-           fmt::format(
-               "Where is {}{}? {}. Its floor (2, base, roof), with its direction where that "
-               "is not said (2:x), or unused.",
-               printable(name),
-               columns_[c].header.place.empty()
-                   ? ""
-                   : fmt::format(" ({})", printable(columns_[c].header.place)),
-               why),
+           fmt::format("Where is {}{}? {}. Its floor (2, base, roof), with its direction where "
+                       "that is not said (2:x), or unused.",
+                       printable(name),
+                       columns_[c].header.place.empty()
+                           ? ""
+                           : fmt::format(" ({})", printable(columns_[c].header.place)),
+                       why),
            "",
            "",
            {},
@@ -236,12 +235,11 @@ class ChannelPlacing {
   }
 
   void ask_reading(const ColumnPlaces& found, std::size_t column) {
-    open(
-        "titles",
-        fmt::format("{} can be read in two ways:\n  frames      {}\n  directions  {}\nWhich one do "
-                    "the titles mean?",
-                    printable(columns_[column].name), found.as_frame, found.as_direction),
-        "");
+    open("titles",
+         fmt::format("{} can be read in two ways:\n  frames      {}\n  directions  {}\nWhich one "
+                     "do the titles mean?",
+                     printable(columns_[column].name), found.as_frame, found.as_direction),
+         "");
   }
 
   void ask_place(const Place& place) {
@@ -280,8 +278,7 @@ class ChannelPlacing {
 
 std::string ask_base(const BuildingDraft&) {
   return "Which level is the base, whose motion drives the stories above it: ground (the first "
-         "floor) "
-         "or\nbasement?";
+         "floor) or\nbasement?";
 }
 
 bool asks_base(const BuildingDraft& d) {

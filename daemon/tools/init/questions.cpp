@@ -110,8 +110,7 @@ std::string take_directions(const std::string& text, Draft& d, ColumnCache&) {
 std::string ask_bays(const Draft& d) {
   if (d.station)
     return "Bays of the plan along x and along y, such as 2x1? With 0x0 one frame stands for all "
-           "of "
-           "its\ndirection; torsion needs frames.";
+           "of its\ndirection; torsion needs frames.";
   std::string out =
       "Bays of the plan along x and along y, such as 2x1? Every frame needs an accelerometer on "
       "every\nfloor: ";

@@ -133,11 +133,10 @@ std::string robustness_section(const Robustness& r, int seeds) {
       rows.back().push_back(percent(sweep.wrong_ratio(kind)));
     }
   }
-  out +=
-      html_figure(plots,
-                  "The sensors' noise stays, the motion fades from left to right. The design is "
-                  "off by up to 20 % in k and 40 % in the rest. Dots: the share of all k that is "
-                  "published and wrong by more than 5 %.");
+  out += html_figure(plots,
+                     "The sensors' noise stays, the motion fades from left to right. The design is "
+                     "off by up to 20 % in k and 40 % in the rest. Dots: the share of all k that "
+                     "is published and wrong by more than 5 %.");
   out += html_table({"sweep", "k published", "of these off by > 5 %", "G published",
                      "off by > 25 %", "c published", "off by > 25 %"},
                     rows);

@@ -252,8 +252,7 @@ std::string largest_error(const SessionFloors& floors) {
   if (!(most > 0)) return "";
   return fmt::format(
       " Predicted from the others, measured floors are off by {:.0f} to {:.0f} % below 5 Hz: "
-      "floors "
-      "without a channel are not better.",
+      "floors without a channel are not better.",
       100 * least, 100 * most);
 }
 
@@ -322,9 +321,8 @@ std::string transfer_section(const SessionReport& r) {
                     rows) +
          "<p>The model's lowest mode along the direction is paired with the measured peak of the "
          "most similar shape. A MAC of 1 means equal shapes; modes with a MAC below 0.8 are not "
-         "paired. Reference-dynamic "
-         "stiffness is reference-static stiffness times the square of the ratio of the two "
-         "frequencies, for the frames of that direction.</p>\n";
+         "paired. Reference-dynamic stiffness is reference-static stiffness times the square of "
+         "the ratio of the two frequencies, for the frames of that direction.</p>\n";
 }
 
 namespace {
@@ -396,9 +394,8 @@ std::string loops_section(const SessionReport& r) {
   return out +
          html_figure(
              plots,
-             fmt::format("The strongest motion ({}): restoring force with damping "
-                         "over story drift, above {:g} Hz; dashed: the identified "
-                         "stiffness (median).{}",
+             fmt::format("The strongest motion ({}): restoring force with damping over story "
+                         "drift, above {:g} Hz; dashed: the identified stiffness (median).{}",
                          spans, r.config->pipeline.options.high_pass_hz,
                          frames.size() > kMaxLoops ? " Only the first frames are shown." : "")) +
          tables;
@@ -414,8 +411,7 @@ std::string figure_10_section(const SessionReport& r) {
           all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), from + kMaxPerPlot)));
       std::string caption = fmt::format(
           "{}: on the left the means, with whiskers of one standard error of a window; on the "
-          "right "
-          "a boxplot per parameter (median, quartiles, adjacent values, outliers as +), of ",
+          "right a boxplot per parameter (median, quartiles, adjacent values, outliers as +), of ",
           kKindName[kind]);
       for (std::size_t s = 0; s < r.compared.size(); ++s)
         caption += fmt::format(
@@ -467,8 +463,7 @@ std::string floors_section(const SessionReport& r) {
              "<p>Each floor is predicted from all others with the stiffnesses identified in the "
              "strong motion ({:.1f} s to {:.1f} s, 5 to 95 % of the Arias intensity at the top). "
              "Errors are rms of the error over rms of the motion. The spline goes through the "
-             "other "
-             "floors; next to a channel one story away it may do as well.</p>\n",
+             "other floors; next to a channel one story away it may do as well.</p>\n",
              session_seconds(r, floors.from_us), session_seconds(r, floors.to_us));
 }
 

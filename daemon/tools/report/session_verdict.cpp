@@ -212,10 +212,9 @@ std::string change_table(const SessionReport& r) {
                                      [](const ElementChange& c) { return c.announced; });
   return html_table({"element", "parameter", "unit", "before", "after", "change, %", "since, s"},
                     rows) +
-         (announced
-              ? "<p>The change is the announced one, against the baseline and at equal amplitude; "
-                "before and after are means of this session's windows.</p>\n"
-              : "");
+         (announced ? "<p>The change is the announced one, against the baseline and at equal "
+                      "amplitude; before and after are means of this session's windows.</p>\n"
+                    : "");
 }
 
 /// Returns the least loss of one story of a frame that would have shown in every judged frame.
