@@ -13,10 +13,18 @@ namespace framewatch::daemon {
 /// Returns the text with a capital first letter, if that is a to z.
 std::string with_capital(std::string text);
 
-/// Returns "a, b, c", or "a, b and 3 more" when there are more than `most` names. `rest`: fmt
-/// format of the number of the others.
+/// Returns "a, b, c", or "a, b and 3 more" when there are more than `most` names. `rest`: fmt format
+/// of the number of the others.
 std::string listed(const std::vector<std::string>& names, std::size_t most = SIZE_MAX,
                    const char* rest = " and {} more");
+
+/// Returns "[a, b, c]": `text` of each item.
+template <typename Items, typename Text>
+std::string bracketed(const Items& items, const Text& text, const char* between = ", ") {
+  std::string out;
+  for (const auto& item : items) out += (out.empty() ? "" : between) + text(item);
+  return "[" + out + "]";
+}
 
 /// Returns the value in a fmt format, or "-" if it is not finite.
 inline std::string or_dash(double value, const char* format) {

@@ -199,9 +199,8 @@ class Checker {
   }
 
   void parameter(const ParameterExpectation& e, const Series& series) {
-    const Range range = found_.series.range(
-        microseconds(e.span.from_s, found_.first_us),
-        e.span.to_s < 4e9 ? microseconds(e.span.to_s, found_.first_us) : INT64_MAX);
+    const Range range = found_.series.range(microseconds(e.span.from_s, found_.first_us),
+                                            microseconds(e.span.to_s, found_.first_us));
     const EstimateSeries::Quartiles q = found_.series.quartiles(series, range);
     if (e.median) quartile(e, series, range, "median", *e.median, q.median);
     if (e.q1) quartile(e, series, range, "q1", *e.q1, q.q1);
