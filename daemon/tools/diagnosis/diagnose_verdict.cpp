@@ -12,6 +12,7 @@
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
+#include "daemon/base/words.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
@@ -205,12 +206,6 @@ std::string gap_percent(double share) {
   return fmt::format("{:.2f} %", 100 * share);
 }
 
-std::string with_capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
-    text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
-}
-
 std::string effect_words(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
   std::string name(name_of(f.chosen.kind));
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -328,17 +323,17 @@ std::string damping_sentence(const DiagnoseOutput& o) {
 
 std::string diagnosis_text(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
-  std::string out = verdict_sentence(o) + "\n  " + gap_sentence(o) + "\n";
-  if (const std::string text = damping_sentence(o); !text.empty()) out += "  " + text + "\n";
-  if (const std::string text = noise_sentence(o); !text.empty()) out += "  " + text + "\n";
+  std::vector<std::string> lines{gap_sentence(o), damping_sentence(o), noise_sentence(o)};
   for (const estimator::FoundEffect& f : d.effects)
-    out += fmt::format("  {}, {}: {}; it closes {:.0f} % of the gap\n", grade_word(grade_of(f)),
-                       effect_words(o, f), confidence_words(f),
-                       100 * share_of_gap(o, f.before - f.after));
-  if (const std::string text = leading_sentence(o); !text.empty()) out += "  " + text + "\n";
-  if (const std::string text = kind_sentence(o); d.effects.empty() && !text.empty())
-    out += "  " + text + "\n";
-  if (!d.reason.empty()) out += "  " + d.reason + "\n";
+    lines.push_back(fmt::format("{}, {}: {}; it closes {:.0f} % of the gap",
+                                grade_word(grade_of(f)), effect_words(o, f), confidence_words(f),
+                                100 * share_of_gap(o, f.before - f.after)));
+  lines.push_back(leading_sentence(o));
+  if (d.effects.empty()) lines.push_back(kind_sentence(o));
+  lines.push_back(d.reason);
+  std::string out = verdict_sentence(o) + "\n";
+  for (const std::string& line : lines)
+    if (!line.empty()) out += "  " + line + "\n";
   return out;
 }
 

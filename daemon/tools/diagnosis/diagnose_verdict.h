@@ -22,6 +22,11 @@ struct DiagnoseOutput {
   const estimator::Diagnosis& diagnosis;
 };
 
+/// Returns the content of diagnosis.json, schema framewatch.diagnosis/1 (docs/formats.md).
+std::string diagnosis_json(const DiagnoseOutput& output);
+/// Returns the content of report.html, a self-contained page.
+std::string diagnosis_report(const DiagnoseOutput& output);
+
 // The functions below describe a diagnosis for the people who look after the building. All but
 // kind_section() return text, not HTML.
 
@@ -81,7 +86,6 @@ std::string noise_sentence(const DiagnoseOutput& output);
 /// Returns the text that the command prints: all of these.
 std::string diagnosis_text(const DiagnoseOutput& output);
 
-std::string gap_percent(double share);       ///< "12.34 %"
-std::string with_capital(std::string text);  ///< with a capital first letter
+std::string gap_percent(double share);  ///< "12.34 %"
 
 }  // namespace framewatch::daemon
