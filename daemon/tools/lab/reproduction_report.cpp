@@ -184,9 +184,7 @@ std::string with_noise(const Rows& rows) {
           kind == 0 ? r->name : "",       kKinds[kind],
           percent(r->least_median(kind)), "**" + percent(ours) + "**",
           limit_text(r->name, kind),      fmt::format("{:.2f}", ours / r->least_median(kind))};
-      for (const Method method : {Method::matched_unaware, Method::refined, Method::paper_accel,
-                                  Method::paper_example, Method::paper_denoised})
-        cells.push_back(percent(r->of(method, kind).quantile(0.5)));
+      add_other_medians(*r, kind, cells);
       out += row(cells);
     }
   return out;
