@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
+#include "daemon/base/words.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -24,19 +25,12 @@ std::string number(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-template <class Range, class Text>
-std::string list(const Range& items, const Text& text, const char* between = ", ") {
-  std::string out;
-  for (const auto& item : items) out += (out.empty() ? "" : between) + text(item);
-  return "[" + out + "]";
-}
-
 std::string names(const std::vector<std::string>& items) {
-  return list(items, quoted);
+  return bracketed(items, quoted);
 }
 
 std::string numbers(const std::vector<double>& items) {
-  return list(items, number);
+  return bracketed(items, number);
 }
 
 bool all_equal(const std::vector<double>& items) {
@@ -57,16 +51,17 @@ std::string node_mass(const estimator::Structure& s) {
   if (all_equal(s.node_mass)) return number(s.node_mass.front());
   const auto row = static_cast<std::size_t>(std::max(s.m(), 1));
   const auto floor = row * static_cast<std::size_t>(std::max(s.n(), 1));
-  return list(
+  return bracketed(
       pieces(s.node_mass, floor),
-      [&](const std::vector<double>& nodes) { return list(pieces(nodes, row), numbers); }, ",\n  ");
+      [&](const std::vector<double>& nodes) { return bracketed(pieces(nodes, row), numbers); },
+      ",\n  ");
 }
 
 /// Returns a grid [story][frame]: each story's stiffness divided among its frames by the plan.
 std::string frame_stiffness(const std::vector<double>& stories, const std::vector<double>& spans) {
   const std::vector<double> shares = shares_of_frames(spans);
   if (all_equal(stories) && all_equal(shares)) return number(stories.front() * shares.front());
-  return list(stories, [&](double story) {
+  return bracketed(stories, [&](double story) {
     std::vector<double> frames = shares;
     for (double& stiffness : frames) stiffness *= story;
     return numbers(frames);

@@ -235,6 +235,42 @@ std::string largest_error(const SessionFloors& floors) {
       100 * least, 100 * most);
 }
 
+/// Adds the loop and the identified stiffness of one stage to a plot.
+void add_loop(const SessionReport& r, const FrameLoop& loop, std::size_t stage, int color,
+              SvgPlot& plot) {
+  std::vector<double> d, f;
+  const auto stride =
+      std::max<std::size_t>(1, loop.drift_m.size() / static_cast<std::size_t>(kMaxLoopPoints));
+  for (std::size_t i = 0; i < loop.drift_m.size(); i += stride) {
+    d.push_back(1e3 * loop.drift_m[i]);
+    f.push_back(loop.force_n[i]);
+  }
+  plot.add(SvgSeries{"", color, SvgMark::thin_line, d, f});
+  if (loop.parameter < 0) return;
+  const auto p = static_cast<std::size_t>(loop.parameter);
+  const double k = summarise(r.estimates, p, r.compared[stage].whole).boxplot.median;
+  const double end = loop.largest_drift_m;
+  if (std::isfinite(k))
+    plot.add(SvgSeries{"", color, SvgMark::dashed, {-1e3 * end, 1e3 * end}, {-k * end, k * end}});
+}
+
+/// Returns a heading with the stage's name and a table of the largest drifts and forces.
+std::string loop_table(const SessionReport& r, const StageLoops& of) {
+  std::vector<std::vector<std::string>> rows;
+  for (const FrameLoop& loop : of.loops.loops) {
+    const double height =
+        r.config->pipeline.structure.story_height[static_cast<std::size_t>(loop.story - 1)];
+    double largest_force = 0;
+    for (const double f : loop.force_n) largest_force = std::max(largest_force, std::abs(f));
+    rows.push_back({html_text(loop.name), fmt::format("{:.3f}", 1e3 * loop.largest_drift_m),
+                    fmt::format("{:.3f}", 100 * loop.largest_drift_m / height),
+                    fmt::format("{:.2f}", largest_force)});
+  }
+  return "<h3>" + html_text(r.compared[of.stage].name) + "</h3>\n" +
+         html_table({"frame", "largest drift, mm", "of the story height, %", "largest force, N"},
+                    rows);
+}
+
 }  // namespace
 
 std::string histories_section(const SessionReport& r) {
@@ -302,46 +338,6 @@ std::string transfer_section(const SessionReport& r) {
          "paired. Reference-dynamic stiffness is reference-static stiffness times the square of "
          "the ratio of the two frequencies, for the frames of that direction.</p>\n";
 }
-
-namespace {
-
-/// Adds the loop and the identified stiffness of one stage to a plot.
-void add_loop(const SessionReport& r, const FrameLoop& loop, std::size_t stage, int color,
-              SvgPlot& plot) {
-  std::vector<double> d, f;
-  const auto stride =
-      std::max<std::size_t>(1, loop.drift_m.size() / static_cast<std::size_t>(kMaxLoopPoints));
-  for (std::size_t i = 0; i < loop.drift_m.size(); i += stride) {
-    d.push_back(1e3 * loop.drift_m[i]);
-    f.push_back(loop.force_n[i]);
-  }
-  plot.add(SvgSeries{"", color, SvgMark::thin_line, d, f});
-  if (loop.parameter < 0) return;
-  const auto p = static_cast<std::size_t>(loop.parameter);
-  const double k = summarise(r.estimates, p, r.compared[stage].whole).boxplot.median;
-  const double end = loop.largest_drift_m;
-  if (std::isfinite(k))
-    plot.add(SvgSeries{"", color, SvgMark::dashed, {-1e3 * end, 1e3 * end}, {-k * end, k * end}});
-}
-
-/// Returns a heading with the stage's name and a table of the largest drifts and forces.
-std::string loop_table(const SessionReport& r, const StageLoops& of) {
-  std::vector<std::vector<std::string>> rows;
-  for (const FrameLoop& loop : of.loops.loops) {
-    const double height =
-        r.config->pipeline.structure.story_height[static_cast<std::size_t>(loop.story - 1)];
-    double largest_force = 0;
-    for (const double f : loop.force_n) largest_force = std::max(largest_force, std::abs(f));
-    rows.push_back({html_text(loop.name), fmt::format("{:.3f}", 1e3 * loop.largest_drift_m),
-                    fmt::format("{:.3f}", 100 * loop.largest_drift_m / height),
-                    fmt::format("{:.2f}", largest_force)});
-  }
-  return "<h3>" + html_text(r.compared[of.stage].name) + "</h3>\n" +
-         html_table({"frame", "largest drift, mm", "of the story height, %", "largest force, N"},
-                    rows);
-}
-
-}  // namespace
 
 std::string loops_section(const SessionReport& r) {
   if (r.loops.empty()) return "";
