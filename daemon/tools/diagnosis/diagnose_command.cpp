@@ -166,35 +166,22 @@ std::vector<DiagnoseRecord> read_records(const Config& config, const DiagnoseArg
   return read_diagnose_records(config, paths, a.component, problems);
 }
 
-/// Shows the progress of a diagnosis on a terminal. Every piece of its parallel work counts.
-class DiagnosisProgress {
- public:
-  explicit DiagnosisProgress(bool quiet) : line_("diagnose", quiet) {}
-
-  /// Called between the calls of Workers::run().
-  void set_step(const std::string& what, double done, double then) {
-    what_ = what;
-    done_ = done;
-    then_ = then;
-    line_(what, done);
-  }
-  void count(int pieces, int of) { line_(what_, done_ + (then_ - done_) * pieces / of); }
-
- private:
-  ProgressLine line_;
-  std::string what_;
-  double done_ = 0, then_ = 0;
-};
-
 /// Runs the diagnosis with the requested number of threads, and shows its progress on a terminal.
+/// Every piece of its parallel work counts.
 estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
                                    const estimator::DiagnosisInput& input,
                                    estimator::DiagnosisOptions options) {
   if (a.component.any()) options.tolerances.mass = kComponentMass;
-  DiagnosisProgress progress(a.quiet);
+  ProgressLine line("diagnose", a.quiet);
+  struct {
+    std::string what;
+    double done, then;
+  } step{"", 0, 0};  // set between the calls of Workers::run()
   const Workers workers(
       a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
-      [&](const std::string&, int pieces, int of) { progress.count(pieces, of); });
+      [&](const std::string&, int pieces, int of) {
+        line(step.what, step.done + (step.then - step.done) * pieces / of);
+      });
   options.parallel = [&](int count, const std::function<void(int)>& work) {
     workers.run("", count, work);
   };
@@ -202,7 +189,8 @@ estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
     workers.run_within(count, work);
   };
   options.progress = [&](const std::string& what, double done, double then) {
-    progress.set_step(what, done, then);
+    step = {what, done, then};
+    line(what, done);
   };
   return diagnose(input.plant, input.segments, options);
 }

@@ -71,9 +71,7 @@ Json effect_json(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
 Json kind_json(const estimator::WhereEntry& where) {
   if (!where.kind) return nullptr;
   Json share = Json::object();
-  for (const estimator::LawKind kind :
-       {estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
-        estimator::LawKind::hysteretic, estimator::LawKind::time_varying})
+  for (const estimator::LawKind kind : kToldKinds)
     share[law_kind_word(kind)] = json_value(where.kind->share[static_cast<std::size_t>(kind)]);
   return {{"name", law_kind_word(where.kind->kind)}, {"explained_share", share}};
 }

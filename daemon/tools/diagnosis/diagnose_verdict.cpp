@@ -183,9 +183,7 @@ std::string kind_section(const DiagnoseOutput& o) {
   const estimator::WhereEntry* where = of_kind(o);
   if (!where) return "";
   std::vector<std::vector<std::string>> rows;
-  for (const estimator::LawKind kind :
-       {estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
-        estimator::LawKind::hysteretic, estimator::LawKind::time_varying}) {
+  for (const estimator::LawKind kind : kToldKinds) {
     std::string word = law_kind_word(kind);
     std::replace(word.begin(), word.end(), '_', ' ');
     rows.push_back(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -62,6 +63,11 @@ std::string confidence_words(const estimator::FoundEffect& effect);
 /// Returns one sentence: the kind of force that the likeliest element needs, whatever its law. ""
 /// if no element was examined or a linear one is enough.
 std::string kind_sentence(const DiagnoseOutput& output);
+
+/// Kinds whose share of a force is told.
+inline constexpr std::array kToldKinds = {
+    estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
+    estimator::LawKind::hysteretic, estimator::LawKind::time_varying};
 
 /// Returns HTML of kind_sentence() with pictures: the force beyond a linear element over
 /// deformation, and its means over deformation and over rate. "" if kind_sentence() is.
