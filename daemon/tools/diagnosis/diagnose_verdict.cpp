@@ -12,7 +12,6 @@
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
-#include "daemon/base/words.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 

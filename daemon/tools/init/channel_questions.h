@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
-
 #include "daemon/tools/init/draft.h"
 
 namespace framewatch::daemon {

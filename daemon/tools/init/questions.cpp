@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/init/questions.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include <fmt/core.h>

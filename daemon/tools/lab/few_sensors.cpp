@@ -5,7 +5,6 @@
 #include <cmath>
 #include <mutex>
 #include <numbers>
-#include <utility>
 
 #include <fmt/core.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/reproduction.h"
 
-#include <cmath>
 #include <numbers>
 #include <utility>
 

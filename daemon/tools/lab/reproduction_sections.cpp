@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/reproduction_sections.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

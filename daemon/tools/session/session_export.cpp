@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/session/session_export.h"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <utility>
