@@ -71,7 +71,7 @@ Json effect_json(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
 Json kind_json(const estimator::WhereEntry& where) {
   if (!where.kind) return nullptr;
   Json share = Json::object();
-  for (const estimator::LawKind kind : kToldKinds)
+  for (const estimator::LawKind kind : kReportedKinds)
     share[law_kind_word(kind)] = json_value(where.kind->share[static_cast<std::size_t>(kind)]);
   return {{"name", law_kind_word(where.kind->kind)}, {"explained_share", share}};
 }

@@ -182,7 +182,7 @@ std::string kind_section(const DiagnoseOutput& o) {
   const estimator::WhereEntry* where = of_kind(o);
   if (!where) return "";
   std::vector<std::vector<std::string>> rows;
-  for (const estimator::LawKind kind : kToldKinds) {
+  for (const estimator::LawKind kind : kReportedKinds) {
     std::string word = law_kind_word(kind);
     std::replace(word.begin(), word.end(), '_', ' ');
     rows.push_back(

@@ -64,8 +64,8 @@ std::string confidence_words(const estimator::FoundEffect& effect);
 /// if no element was examined or a linear one is enough.
 std::string kind_sentence(const DiagnoseOutput& output);
 
-/// Kinds whose share of a force is told.
-inline constexpr std::array kToldKinds = {
+/// The kinds of law whose share of a force the report gives.
+inline constexpr std::array kReportedKinds = {
     estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
     estimator::LawKind::hysteretic, estimator::LawKind::time_varying};
 
