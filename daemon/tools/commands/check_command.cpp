@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/commands/check_command.h"
 
+#include <array>
 #include <string>
 #include <utility>
 
@@ -57,33 +58,11 @@ Halving the steps changes no response in `tests/simulate` by more than 3e-5 of i
 effects act before the sensor's noise, clipping after it.
 )";
 
-const char* place_name(estimator::PlaceKind kind) {
-  switch (kind) {
-    case estimator::PlaceKind::frame:
-      return "frame story";
-    case estimator::PlaceKind::panel:
-      return "floor panel";
-    case estimator::PlaceKind::node:
-      return "node";
-    case estimator::PlaceKind::node_pair:
-      return "two floors";
-    case estimator::PlaceKind::crossing:
-      return "crossing";
-    case estimator::PlaceKind::floor:
-      return "floor";
-    case estimator::PlaceKind::building:
-      return "building";
-    case estimator::PlaceKind::whole_frame:
-      return "whole frame";
-    case estimator::PlaceKind::mode:
-      return "mode";
-    case estimator::PlaceKind::channel:
-      return "channel";
-    case estimator::PlaceKind::channel_pair:
-      return "two channels";
-  }
-  return "";
-}
+/// Words for estimator::PlaceKind, in its order.
+constexpr std::array kPlaces = {"frame story", "floor panel", "node",        "two floors",
+                                "crossing",    "floor",       "building",    "whole frame",
+                                "mode",        "channel",     "two channels"};
+static_assert(kPlaces.size() == static_cast<std::size_t>(estimator::PlaceKind::channel_pair) + 1);
 
 /// Returns " (N/m, default `0`)". Empty without unit and default.
 std::string value_of(const estimator::EffectParameter& p) {
@@ -99,7 +78,8 @@ std::string effects_markdown() {
   for (const estimator::EffectDescription& d : estimator::effect_catalogue()) {
     std::string places;
     for (const estimator::PlaceKind place : d.places)
-      places += fmt::format("{}{}", places.empty() ? "" : " or ", place_name(place));
+      places += fmt::format("{}{}", places.empty() ? "" : " or ",
+                            kPlaces[static_cast<std::size_t>(place)]);
     out += fmt::format("\n## `{}`\n\nAt: {}.\n\n```\n{}\n```\n\n", d.name, places, d.equation);
     if (!d.sign.empty()) out += fmt::format("{} ", d.sign);
     out += fmt::format("Source: {}.\n", d.source);
@@ -121,14 +101,6 @@ bool names_scenario(const std::string& path) {
   return document && is_scenario(*document);
 }
 
-/// Returns the building of a valid scenario.
-std::optional<Config> config_of_scenario(const std::string& path,
-                                         std::vector<ConfigProblem>& problems) {
-  std::optional<Scenario> scenario = load_scenario(path, problems);
-  if (!scenario) return std::nullopt;
-  return std::move(scenario->config);
-}
-
 }  // namespace
 
 int check_command(const CheckArguments& arguments) {
@@ -142,8 +114,11 @@ int check_command(const CheckArguments& arguments) {
   }
   std::vector<ConfigProblem> problems;
   const bool scenario = names_scenario(arguments.config);
-  const std::optional<Config> config = scenario ? config_of_scenario(arguments.config, problems)
-                                                : load_config(arguments.config, problems);
+  std::optional<Config> config;
+  if (!scenario)
+    config = load_config(arguments.config, problems);
+  else if (auto read = load_scenario(arguments.config, problems))
+    config = std::move(read->config);
   std::optional<CheckReport> report;
   if (config) report = make_check_report(*config, arguments.advise);
   if (arguments.json) {

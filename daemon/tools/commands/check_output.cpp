@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/json.h"
+#include "daemon/base/words.h"
 #include "daemon/tools/commands/check_report.h"
 #include "drivers/can/bus_load.h"
 #include "estimator/structure/natural_frequencies.h"
 
 namespace framewatch::daemon {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 Json channels(const Config& config) {
   Json out = Json::array();
@@ -66,10 +61,8 @@ std::string fragility_text(const Config& config) {
                    100 * f.rules.restricted, 100 * f.rules.unsafe);
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out.empty() ? "none" : out;
+std::string frames_text(const std::vector<std::string>& frames) {
+  return frames.empty() ? "none" : listed(frames);
 }
 
 std::string structure_text(const estimator::Structure& s) {
@@ -80,7 +73,7 @@ std::string structure_text(const estimator::Structure& s) {
   return fmt::format(
       "structure   {}: {} stories, x-parallel frames {}, y-parallel frames {}, {}\n"
       "            {:.6g} kg, {} degrees of freedom\n",
-      s.name, s.stories, joined(s.frames_x), joined(s.frames_y), floor, mass,
+      s.name, s.stories, frames_text(s.frames_x), frames_text(s.frames_y), floor, mass,
       s.degrees_of_freedom());
 }
 
@@ -158,16 +151,16 @@ std::string to_json(const std::string& path, const std::optional<CheckReport>& r
       Json groups = Json::array(), advice = Json::array();
       for (const GroupOutlook& g : layout.groups)
         groups.push_back({{"parameter", g.parameter},
-                          {"window_error_ratio", finite(g.window_error)},
-                          {"design_error_ratio", finite(g.design_error)},
-                          {"damping_error_ratio", finite(g.damping_error)}});
+                          {"window_error_ratio", json_value(g.window_error)},
+                          {"design_error_ratio", json_value(g.design_error)},
+                          {"damping_error_ratio", json_value(g.damping_error)}});
       for (const AdvisedFloor& a : layout.advised)
         advice.push_back(
-            {{"floor", a.floor}, {"least_seen_loss_ratio", finite(a.least_seen_loss)}});
+            {{"floor", a.floor}, {"least_seen_loss_ratio", json_value(a.least_seen_loss)}});
       out["layout"] = {{"measured_floors", layout.floors},
                        {"shaking_rms_mps2", layout.shaking_mps2},
                        {"groups", groups},
-                       {"least_seen_loss_ratio", finite(layout.least_seen_loss)},
+                       {"least_seen_loss_ratio", json_value(layout.least_seen_loss)},
                        {"weakest_story", layout.weakest_story},
                        {"advice", advice}};
     }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 
 #ifdef __GLIBC__
@@ -12,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/words.h"
 #include "daemon/tools/commands/layout_warnings.h"
 #include "drivers/can/bus_load.h"
 #include "estimator/pipeline/pipeline.h"
@@ -40,21 +40,14 @@ std::size_t allocated_bytes() {
 #endif
 }
 
-/// Returns the first few names and the number of the others.
-std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMax = 6;
-  const std::size_t shown = std::min(names.size(), kMax);
-  std::string out;
-  for (std::size_t i = 0; i < shown; ++i) out += (i ? ", " : "") + names[i];
-  return names.size() > kMax ? fmt::format("{}, {} more", out, names.size() - kMax) : out;
-}
-
 void warn_about_panels(CheckReport& report) {
   std::vector<std::string> no_shear, weak_shear;
   for (const PanelOutlook& panel : report.panels)
     if (panel.shear_ratio < kWeakShear)
       (panel.shear_ratio < kNoShear ? no_shear : weak_shear).push_back(panel.parameter);
-  const std::string none = some_of(no_shear), weak = some_of(weak_shear);
+  constexpr std::size_t kSome = 6;
+  const std::string none = listed(no_shear, kSome, ", {} more"),
+                    weak = listed(weak_shear, kSome, ", {} more");
   if (!none.empty())
     report.warnings.push_back(
         "the plan is symmetric in the design's stiffness and mass: ground motion does not shear "

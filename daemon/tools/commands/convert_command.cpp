@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/base/progress.h"
+#include "daemon/base/words.h"
 #include "daemon/config/channel_addresses.h"
 #include "daemon/config/config.h"
 #include "daemon/config/header_differences.h"
@@ -29,23 +29,21 @@
 namespace framewatch::daemon {
 namespace {
 
+constexpr std::size_t kNamed = 10;  ///< names in one message
+
 /// Returns the warning of `convert` without a configuration about headers that `out` cannot store.
 /// Empty if nothing is lost. `has_names`: the columns of `out` have names.
 std::string lost_headers(const drivers::Record& record, const std::string& out, bool has_names) {
-  constexpr std::size_t kNamed = 10;
-  std::string names;
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < record.headers.size(); ++c) {
-    if (record.headers[c] == drivers::AxisHeader{}) continue;
-    if (count++ < kNamed) names += (names.empty() ? "" : ", ") + record.names[c];
-  }
-  if (count == 0) return {};
-  if (count > kNamed) names += fmt::format(" and {} more", count - kNamed);
+  std::vector<std::string> named;
+  for (std::size_t c = 0; c < record.headers.size(); ++c)
+    if (record.headers[c] != drivers::AxisHeader{}) named.push_back(record.names[c]);
+  if (named.empty()) return {};
   return fmt::format(
       "{} does not keep what the headers say of {}: {}direction, place and unit; framewatch init "
       "--record makes a configuration of the same files, and convert --config holds them against "
       "one",
-      out, names, has_names ? "" : "name (nodes are numbered in the order of the files), ");
+      out, listed(named, kNamed),
+      has_names ? "" : "name (nodes are numbered in the order of the files), ");
 }
 
 using drivers::AxisAddress;
@@ -194,12 +192,7 @@ std::string chosen(const std::vector<std::string>& found, const std::string& ask
 }
 
 std::string list(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 10;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i)
-    text += (i == 0 ? "" : ", ") + names[i];
-  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
-  return text.empty() ? "none" : text;
+  return names.empty() ? "none" : listed(names, kNamed);
 }
 
 /// Returns the channel of the main window among several windows' estimates, which other_windows_s

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
+#include "daemon/base/words.h"
 #include "estimator/identify/groups/layout_prediction.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -42,10 +44,6 @@ std::vector<estimator::SensorAxis> copied_to(const estimator::PipelineConfig& c,
     out.back().name = fmt::format("{}-{}", axis.name, floor);
   }
   return out;
-}
-
-std::string percent(double ratio) {
-  return std::isfinite(ratio) ? fmt::format("{:.2g} %", 100 * ratio) : "-";
 }
 
 /// An axis that is farther off the frames' directions measures both.
@@ -105,10 +103,9 @@ void free_top(const Config& config, const LayoutOutlook& outlook, std::vector<st
   const int stories = config.pipeline.structure.stories;
   if (outlook.floors.empty() || outlook.floors.back() >= stories) return;
   out.push_back(fmt::format(
-      "no channel on the roof, floor {}: what is above floor {} is judged by what it "
-      "does to that floor alone, and where the ground moves the first mode only, its "
-      "stiffness has errors of 15 % and its damping none that means anything; a channel "
-      "on the roof tells most",
+      "no channel on the roof, floor {}: what is above floor {} is judged by what it does to that "
+      "floor alone, and where the ground moves the first mode only, its stiffness has errors of 15 "
+      "% and its damping none that means anything; a channel on the roof tells most",
       stories, outlook.floors.back()));
 }
 
@@ -219,33 +216,33 @@ LayoutOutlook layout_outlook(const Config& config, int advise) {
 }
 
 std::string layout_text(const LayoutOutlook& o, const estimator::Structure& s) {
-  std::string floors;
-  for (const int floor : o.floors) floors += fmt::format("{}{}", floors.empty() ? "" : ", ", floor);
   std::string out = fmt::format(
       "identifiable groups of stories between the measured floors {} of {} (docs/partial.md)\n"
       "            expected while the base shakes with {:g} m/s2 rms, sensors' noise {}:\n"
       "            {:<16} {:>14} {:>17} {:>14}\n",
-      floors, s.stories, o.shaking_mps2, o.noise_configured ? "as configured" : "1e-4 m/s2/rtHz",
-      "stiffness", "+- one window", "+- by the design", "+- damping");
+      fmt::join(o.floors, ", "), s.stories, o.shaking_mps2,
+      o.noise_configured ? "as configured" : "1e-4 m/s2/rtHz", "stiffness", "+- one window",
+      "+- by the design", "+- damping");
   for (const GroupOutlook& g : o.groups)
     out += fmt::format("            {:<16} {:>14} {:>17} {:>14}\n", g.parameter,
-                       percent(g.window_error), percent(g.design_error), percent(g.damping_error));
+                       or_dash(100 * g.window_error, "{:.2g} %"),
+                       or_dash(100 * g.design_error, "{:.2g} %"),
+                       or_dash(100 * g.damping_error, "{:.2g} %"));
   out +=
       "            by the design: stories' shares in their group off by 5 %, masses by 2 %; the "
       "same in every window\n";
   if (o.least_seen_loss < kNeverSeen)
     out += fmt::format(
         "            by that noise alone, a story that loses {} of its stiffness is seen wherever "
-        "it "
-        "is; story {} needs so much\n",
-        percent(o.least_seen_loss), o.weakest_story);
+        "it is; story {} needs so much\n",
+        or_dash(100 * o.least_seen_loss, "{:.2g} %"), o.weakest_story);
   else
     out += fmt::format("            no loss of stiffness in story {} is seen by these sensors\n",
                        o.weakest_story);
   for (const AdvisedFloor& a : o.advised)
     out += fmt::format("advice      with channels on floor {}: {}\n", a.floor,
                        a.least_seen_loss < kNeverSeen
-                           ? percent(a.least_seen_loss) + " is seen everywhere"
+                           ? or_dash(100 * a.least_seen_loss, "{:.2g} %") + " is seen everywhere"
                            : "places without any remain");
   return out;
 }

@@ -41,60 +41,49 @@ namespace {
 class DemoLogs {
  public:
   /// `report`: page to write; empty for none.
-  explicit DemoLogs(const std::string& report);
-  ~DemoLogs();
+  explicit DemoLogs(const std::string& report) : report_(report) {
+    if (report_.empty()) return;
+    char name[] = "/tmp/framewatch-demo-XXXXXX";
+    if (const char* made = ::mkdtemp(name)) folder_ = made;
+    open_ = !folder_.empty() && raw_.open(folder_ + "/raw.lcmlog") &&
+            estimates_.open(folder_ + "/estimates.lcmlog");
+    if (!open_) fmt::print(stderr, "framewatch demo: no log in /tmp, so no report\n");
+  }
+  ~DemoLogs() {
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  }
   DemoLogs(const DemoLogs&) = delete;
   DemoLogs& operator=(const DemoLogs&) = delete;
 
-  void raw(std::int64_t time_us, const std::string& channel, const void* data, std::size_t size);
+  void raw(const drivers::LcmMessage& m) {
+    open_ = open_ && raw_.write(m.received_us, m.channel, m.data, m.size);
+  }
   void estimate(std::int64_t time_us, const std::string& channel,
-                const std::vector<std::uint8_t>& bytes);
+                const std::vector<std::uint8_t>& bytes) {
+    open_ = open_ && estimates_.write(time_us, channel, bytes.data(), bytes.size());
+  }
+
   /// Closes the logs and writes the report. `building`: the shaken building.
-  void write_report(const DemoBuilding& building);
+  void write_report(const DemoBuilding& building) {
+    if (report_.empty()) return;
+    const std::string config = folder_ + "/building.toml";
+    std::ofstream(config) << building.config_text;
+    if (!open_ || !raw_.close() || !estimates_.close()) return;
+    ReportArguments a;
+    a.estimates = folder_ + "/estimates.lcmlog";
+    a.config = config;
+    if (raw_.events() > 0) a.raw = {folder_ + "/raw.lcmlog"};
+    a.out = report_;
+    a.title = building.title;
+    if (report(a) != 0) fmt::print(stderr, "framewatch demo: no report\n");
+  }
 
  private:
   std::string report_, folder_;
   bool open_ = false;
   drivers::LcmLogWriter raw_, estimates_;
 };
-
-DemoLogs::DemoLogs(const std::string& report) : report_(report) {
-  if (report_.empty()) return;
-  char name[] = "/tmp/framewatch-demo-XXXXXX";
-  if (const char* made = ::mkdtemp(name)) folder_ = made;
-  open_ = !folder_.empty() && raw_.open(folder_ + "/raw.lcmlog") &&
-          estimates_.open(folder_ + "/estimates.lcmlog");
-  if (!open_) fmt::print(stderr, "framewatch demo: no log in /tmp, so no report\n");
-}
-
-DemoLogs::~DemoLogs() {
-  std::error_code ignored;
-  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
-}
-
-void DemoLogs::raw(std::int64_t time_us, const std::string& channel, const void* data,
-                   std::size_t size) {
-  open_ = open_ && raw_.write(time_us, channel, data, size);
-}
-
-void DemoLogs::estimate(std::int64_t time_us, const std::string& channel,
-                        const std::vector<std::uint8_t>& bytes) {
-  open_ = open_ && estimates_.write(time_us, channel, bytes.data(), bytes.size());
-}
-
-void DemoLogs::write_report(const DemoBuilding& building) {
-  if (report_.empty()) return;
-  const std::string config = folder_ + "/building.toml";
-  std::ofstream(config) << building.config_text;
-  if (!open_ || !raw_.close() || !estimates_.close()) return;
-  ReportArguments a;
-  a.estimates = folder_ + "/estimates.lcmlog";
-  a.config = config;
-  if (raw_.events() > 0) a.raw = {folder_ + "/raw.lcmlog"};
-  a.out = report_;
-  a.title = building.title;
-  if (report(a) != 0) fmt::print(stderr, "framewatch demo: no report\n");
-}
 
 /// Returns a port other than LCM's usual one, so that demos and live systems do not mix.
 int demo_port() {
@@ -157,51 +146,49 @@ struct DemoLoop {
   DemoView& view;
 
   /// Shakes the building in real time. Prints the error and returns false if a party failed.
-  bool shake();
+  bool shake() {
+    Simulation simulation(scenario);
+    double next_flush_s = 0;
+    bool changed = false;
+    for (std::int64_t left = instants(scenario); left > 0; --left) {
+      const std::vector<double>& raw = simulation.next();
+      if (!sensors.put(simulation.time_s(), raw)) {
+        fmt::print(stderr, "framewatch demo: {}\n", sensors.error());
+        return false;
+      }
+      // All messages of this instant are sent; the next instant follows when it is due.
+      if (!source.handle(1)) {
+        fmt::print(stderr, "framewatch demo: LCM failed\n");
+        return false;
+      }
+      can.handle(steady_clock_us());
+      (void)view_source.handle(0);
+      if (!page_source.handle(0))
+        fmt::print(stderr, "framewatch demo: the page gets no messages\n");
+      if (simulation.time_s() >= next_flush_s) {
+        next_flush_s += kFlush_s;
+        live.flush();
+        server.wake();
+      }
+      if (!changed && simulation.time_s() > kDropAt_s + forgotten_s) {
+        changed = true;
+        view.set_truth(truth_of(scenario, scenario.changes.front().theta));
+      }
+      view.update(simulation.time_s(), seconds);
+    }
+    return true;
+  }
+
   /// Waits for the last messages, which can be late on a busy machine.
-  void receive_rest(const Estimation& estimation);
+  void receive_rest(const Estimation& estimation) {
+    for (std::int64_t seen = -1; seen != estimation.intake().counters().messages;) {
+      seen = estimation.intake().counters().messages;
+      if (!source.handle(300)) break;
+      can.handle(steady_clock_us());
+      (void)view_source.handle(0);
+    }
+  }
 };
-
-bool DemoLoop::shake() {
-  Simulation simulation(scenario);
-  double next_flush_s = 0;
-  bool changed = false;
-  for (std::int64_t left = instants(scenario); left > 0; --left) {
-    const std::vector<double>& raw = simulation.next();
-    if (!sensors.put(simulation.time_s(), raw)) {
-      fmt::print(stderr, "framewatch demo: {}\n", sensors.error());
-      return false;
-    }
-    // All messages of this instant are sent; the next instant follows when it is due.
-    if (!source.handle(1)) {
-      fmt::print(stderr, "framewatch demo: LCM failed\n");
-      return false;
-    }
-    can.handle(steady_clock_us());
-    (void)view_source.handle(0);
-    if (!page_source.handle(0)) fmt::print(stderr, "framewatch demo: the page gets no messages\n");
-    if (simulation.time_s() >= next_flush_s) {
-      next_flush_s += kFlush_s;
-      live.flush();
-      server.wake();
-    }
-    if (!changed && simulation.time_s() > kDropAt_s + forgotten_s) {
-      changed = true;
-      view.set_truth(truth_of(scenario, scenario.changes.front().theta));
-    }
-    view.update(simulation.time_s(), seconds);
-  }
-  return true;
-}
-
-void DemoLoop::receive_rest(const Estimation& estimation) {
-  for (std::int64_t seen = -1; seen != estimation.intake().counters().messages;) {
-    seen = estimation.intake().counters().messages;
-    if (!source.handle(300)) break;
-    can.handle(steady_clock_us());
-    (void)view_source.handle(0);
-  }
-}
 
 }  // namespace
 
@@ -263,7 +250,7 @@ int demo(const DemoArguments& a) {
       inputs.push_back(at.lcm_channel);
   drivers::LcmSource source(
       bus.estimator(), inputs, settings.queue_capacity, [&](const drivers::LcmMessage& m) {
-        logs.raw(m.received_us, m.channel, m.data, m.size);
+        logs.raw(m);
         estimation.message(m.channel, m.data, m.size, m.sender, m.received_us);
       });
   drivers::LcmSource page_source(bus.page(), live.channels(), settings.queue_capacity,

@@ -67,8 +67,8 @@ bool has_multicast_route() {
   return ::connect(socket.get(), &group, sizeof group) == 0;
 }
 
-}  // namespace
-
+/// Moves this single-threaded process into a private user and network namespace with a multicast
+/// route on the loopback. Returns false and sets the error if the kernel refuses.
 bool enter_private_network(std::string& error) {
   const uid_t user = ::getuid();
   const gid_t group = ::getgid();
@@ -84,6 +84,7 @@ bool enter_private_network(std::string& error) {
   return false;
 }
 
+/// Returns true if a message sent on `url` comes back within a second.
 bool lcm_round_trip(const std::string& url) {
   std::string error;
   const auto lcm = drivers::open_lcm(url, {}, error);
@@ -97,6 +98,8 @@ bool lcm_round_trip(const std::string& url) {
   }
   return received > 0;
 }
+
+}  // namespace
 
 DemoNetwork open_demo_network(int port) {
   const std::string url = fmt::format("udpm://{}:{}?ttl=0", kGroup, port);

@@ -16,11 +16,4 @@ struct DemoNetwork {
 /// else memq. Call it before starting threads: it may move the process into that namespace.
 DemoNetwork open_demo_network(int port);
 
-/// Returns true if a message sent on `url` comes back within a second.
-bool lcm_round_trip(const std::string& url);
-
-/// Moves this single-threaded process into a private user and network namespace with a multicast
-/// route on the loopback. Returns false and sets the error if the kernel refuses.
-bool enter_private_network(std::string& error);
-
 }  // namespace framewatch::daemon

@@ -16,12 +16,11 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
+#include "daemon/base/words.h"
 #include "daemon/base/workers.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/effects.h"
-#include "daemon/tools/diagnosis/diagnose_json.h"
 #include "daemon/tools/diagnosis/diagnose_records.h"
-#include "daemon/tools/diagnosis/diagnose_report.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "drivers/files/text_output.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
@@ -35,39 +34,32 @@ constexpr int kGapRemains = 1;
 constexpr double kComponentMass = 0.1;  ///< tolerance of a component test's mass
 constexpr double kMin = 1e-6;           ///< least value of a design, which must be positive
 
-/// Returns [story][frame] lists of stiffness or damping, as in [structure.design].
-std::string grid(const estimator::ParameterTable& table, const Eigen::VectorXd& theta, int stories,
-                 int from, int count, bool damping) {
-  std::string out = "[";
-  for (int story = 1; story <= stories; ++story) {
-    out += story > 1 ? ", [" : "[";
-    for (int f = from; f < from + count; ++f) {
-      const int at = damping ? table.frame_damping(story, f) : table.frame_stiffness(story, f);
-      out += fmt::format("{}{:.9g}", f > from ? ", " : "", std::max(theta[at], kMin));
-    }
-    out += "]";
-  }
-  return out + "]";
+/// Returns a value of a design.
+std::string positive(double value) {
+  return fmt::format("{:.9g}", std::max(value, kMin));
 }
 
-std::string panels(const estimator::Structure& s, const estimator::ParameterTable& table,
-                   const Eigen::VectorXd& theta, bool damping) {
-  std::string out = "[";
-  for (int story = 1; story <= s.stories; ++story) {
-    out += story > 1 ? ", [" : "[";
-    for (int l = 0; l < s.n() - 1; ++l) {
-      out += l > 0 ? ", [" : "[";
-      for (int j = 0; j < s.m() - 1; ++j) {
-        const int panel = l * (s.m() - 1) + j;
-        const int at =
-            damping ? table.panel_damping(story, panel) : table.panel_stiffness(story, panel);
-        out += fmt::format("{}{:.9g}", j > 0 ? ", " : "", std::max(theta[at], kMin));
-      }
-      out += "]";
-    }
-    out += "]";
-  }
-  return out + "]";
+/// Returns [story][frame] lists of `count` frames, as in [structure.design]. offset: 0 for
+/// stiffness, table.elements() for damping.
+std::string grid(const DiagnoseOutput& o, int from, int count, int offset) {
+  return bracketed(o.plant.structure.stories, [&](int story) {
+    return bracketed(count, [&](int f) {
+      const int at = o.plant.table.frame_stiffness(story + 1, from + f) + offset;
+      return positive(o.diagnosis.declared.theta[at]);
+    });
+  });
+}
+
+std::string panels(const DiagnoseOutput& o, int offset) {
+  const estimator::Structure& s = o.plant.structure;
+  return bracketed(s.stories, [&](int story) {
+    return bracketed(s.n() - 1, [&](int l) {
+      return bracketed(s.m() - 1, [&](int j) {
+        const int at = o.plant.table.panel_stiffness(story + 1, l * (s.m() - 1) + j) + offset;
+        return positive(o.diagnosis.declared.theta[at]);
+      });
+    });
+  });
 }
 
 /// Returns the rotational stiffness at every floor of frames whose bending is part of the design.
@@ -77,12 +69,12 @@ std::string bending(const estimator::Plant& plant, const estimator::Model& model
     const std::size_t along = e.place.direction == estimator::Direction::x ? 0 : 1;
     if (e.form != estimator::LawForm::bending || !(plant.bending[along] > 0)) continue;
     const double flexibility = std::max(e.parameters[0].plain(), kMin / plant.bending[along]);
-    out += along == 0 ? "krx_nmprad = [" : "kry_nmprad = [";
-    for (int floor = 0; floor < plant.structure.stories; ++floor)
-      out += fmt::format("{}{:.9g}", floor > 0 ? ", " : "",
-                         plant.bending.of_floor(along, static_cast<std::size_t>(floor)) /
-                             plant.bending[along] / flexibility);
-    out += "]\n";
+    const auto of_floor = [&](int floor) {
+      return fmt::format("{:.9g}", plant.bending.of_floor(along, static_cast<std::size_t>(floor)) /
+                                       plant.bending[along] / flexibility);
+    };
+    out += fmt::format("kr{}_nmprad = {}\n", letter(e.place.direction),
+                       bracketed(plant.structure.stories, of_floor));
   }
   return out;
 }
@@ -111,22 +103,20 @@ std::string diagnosis_model_toml(const DiagnoseOutput& o) {
   std::string error;
   const auto text = read_text_file(o.config.path, error);
   const estimator::Structure& s = o.plant.structure;
-  const Eigen::VectorXd& theta = o.diagnosis.declared.theta;
   std::string out = "# Made by framewatch diagnose from " + o.config.path +
                     ": the design has the identified values, [[effect]] the effects found.\n";
   out += without(without(text.value_or(""), "structure.design"), "effect");
   if (out.back() != '\n') out += "\n";
   out += "\n[structure.design]\n";
-  const estimator::ParameterTable& table = o.plant.table;
   for (const bool damping : {false, true}) {
+    const int offset = damping ? o.plant.table.elements() : 0;
+    const char* unit = damping ? "nspm" : "npm";
     if (s.n() > 0)
-      out += fmt::format("{} = {}\n", damping ? "cx_nspm" : "kx_npm",
-                         grid(table, theta, s.stories, 0, s.n(), damping));
+      out += fmt::format("{}x_{} = {}\n", damping ? 'c' : 'k', unit, grid(o, 0, s.n(), offset));
     if (s.m() > 0)
-      out += fmt::format("{} = {}\n", damping ? "cy_nspm" : "ky_npm",
-                         grid(table, theta, s.stories, s.n(), s.m(), damping));
+      out += fmt::format("{}y_{} = {}\n", damping ? 'c' : 'k', unit, grid(o, s.n(), s.m(), offset));
     if (s.panels() > 0 && !o.plant.stiff_floors)
-      out += fmt::format("{} = {}\n", damping ? "gc" : "gk", panels(s, table, theta, damping));
+      out += fmt::format("g{} = {}\n", damping ? 'c' : 'k', panels(o, offset));
   }
   out += bending(o.plant, o.diagnosis.declared);
   std::vector<estimator::Effect> effects = estimator::modal_damping_effects(o.diagnosis.declared);
@@ -136,13 +126,6 @@ std::string diagnosis_model_toml(const DiagnoseOutput& o) {
         effects.push_back(catalogue_effect(o.plant, o.segments, f, o.diagnosis.declared));
   if (!effects.empty()) out += "\n" + effects_toml(effects, s, o.plant.axes);
   return out;
-}
-
-bool write_file(const std::string& path, const std::string& text) {
-  drivers::TextOutput out;
-  if (out.open(path) && out.write(text) && out.close()) return true;
-  fmt::print(stderr, "{}: {}\n", path, out.error());
-  return false;
 }
 
 /// Keeps freed memory in the heap: matrices of megabytes are allocated and freed by the thousand.
@@ -183,35 +166,22 @@ std::vector<DiagnoseRecord> read_records(const Config& config, const DiagnoseArg
   return read_diagnose_records(config, paths, a.component, problems);
 }
 
-/// Shows the progress of a diagnosis on a terminal. Every piece of its parallel work counts.
-class DiagnosisProgress {
- public:
-  explicit DiagnosisProgress(bool quiet) : line_("diagnose", quiet) {}
-
-  /// Called between the calls of Workers::run().
-  void set_step(const std::string& what, double done, double then) {
-    what_ = what;
-    done_ = done;
-    then_ = then;
-    line_(what, done);
-  }
-  void count(int pieces, int of) { line_(what_, done_ + (then_ - done_) * pieces / of); }
-
- private:
-  ProgressLine line_;
-  std::string what_;
-  double done_ = 0, then_ = 0;
-};
-
 /// Runs the diagnosis with the requested number of threads, and shows its progress on a terminal.
+/// Every piece of its parallel work counts.
 estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
                                    const estimator::DiagnosisInput& input,
                                    estimator::DiagnosisOptions options) {
   if (a.component.any()) options.tolerances.mass = kComponentMass;
-  DiagnosisProgress progress(a.quiet);
+  ProgressLine line("diagnose", a.quiet);
+  struct {
+    std::string what;
+    double done, then;
+  } step{"", 0, 0};  // set between the calls of Workers::run()
   const Workers workers(
       a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
-      [&](const std::string&, int pieces, int of) { progress.count(pieces, of); });
+      [&](const std::string&, int pieces, int of) {
+        line(step.what, step.done + (step.then - step.done) * pieces / of);
+      });
   options.parallel = [&](int count, const std::function<void(int)>& work) {
     workers.run("", count, work);
   };
@@ -219,7 +189,8 @@ estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
     workers.run_within(count, work);
   };
   options.progress = [&](const std::string& what, double done, double then) {
-    progress.set_step(what, done, then);
+    step = {what, done, then};
+    line(what, done);
   };
   return diagnose(input.plant, input.segments, options);
 }
@@ -231,9 +202,13 @@ bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {
     fmt::print(stderr, "{}: {}\n", directory, failure.message());
     return false;
   }
-  return write_file(directory + "/diagnosis.json", diagnosis_json(output)) &&
-         write_file(directory + "/model.toml", diagnosis_model_toml(output)) &&
-         write_file(directory + "/report.html", diagnosis_report(output));
+  std::string why = drivers::write_text_file(directory + "/diagnosis.json", diagnosis_json(output));
+  if (why.empty())
+    why = drivers::write_text_file(directory + "/model.toml", diagnosis_model_toml(output));
+  if (why.empty())
+    why = drivers::write_text_file(directory + "/report.html", diagnosis_report(output));
+  if (!why.empty()) fmt::print(stderr, "{}\n", why);
+  return why.empty();
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "daemon/tools/diagnosis/diagnose_json.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
+
+#include <array>
 
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/json.h"
-#include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "daemon/tools/simulation/simulation_truth.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"
@@ -70,33 +71,20 @@ Json effect_json(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
 Json kind_json(const estimator::WhereEntry& where) {
   if (!where.kind) return nullptr;
   Json share = Json::object();
-  for (const estimator::LawKind kind :
-       {estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
-        estimator::LawKind::hysteretic, estimator::LawKind::time_varying})
+  for (const estimator::LawKind kind : kReportedKinds)
     share[law_kind_word(kind)] = json_value(where.kind->share[static_cast<std::size_t>(kind)]);
   return {{"name", law_kind_word(where.kind->kind)}, {"explained_share", share}};
 }
 
-const char* outcome_word(estimator::TrialOutcome outcome) {
-  switch (outcome) {
-    case estimator::TrialOutcome::fitted:
-      return "fitted";
-    case estimator::TrialOutcome::screened_out:
-      return "screened_out";
-    case estimator::TrialOutcome::diverged:
-      return "diverged";
-    case estimator::TrialOutcome::other_law:
-      break;
-  }
-  return "other_law";
-}
+/// Words for estimator::TrialOutcome, in its order.
+constexpr std::array kOutcomeWords = {"fitted", "screened_out", "diverged", "other_law"};
 
 Json trial_json(const DiagnoseOutput& o, const estimator::Trial& t) {
   Json out{{"effect", std::string(name_of(t.kind))},
            {"location", location_json(t.place, o.plant.structure, o.plant.axes)},
            {"explained_share", json_value(t.fraction)},
            {"misfit", json_value(t.cost)},
-           {"fate", outcome_word(t.outcome)}};
+           {"fate", kOutcomeWords[static_cast<std::size_t>(t.outcome)]}};
   if (t.second)
     out["together_with"] = {
         {"effect", std::string(name_of(t.second->first))},

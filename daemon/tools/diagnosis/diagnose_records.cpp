@@ -8,9 +8,9 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include "daemon/base/file_digest.h"
+#include "daemon/base/words.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/segment_collector.h"
 #include "drivers/files/input_file.h"
@@ -64,24 +64,23 @@ bool from_record(const Config& config, const estimator::ComponentTest& component
   out.samples.accel.resize(
       static_cast<Eigen::Index>(record->time_s.size()),
       static_cast<Eigen::Index>(axes.size() + (component.force.empty() ? 0 : 1)));
+  const auto values = [&](auto name) {
+    const auto& column = record->accel_mps2[static_cast<std::size_t>(name - record->names.begin())];
+    return Eigen::Map<const Eigen::ArrayXd>(column.data(), std::ssize(column));
+  };
   bool complete = true;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const estimator::SensorAxis& axis = axes[a];
-    std::size_t column = 0;
-    while (column < record->names.size() && record->names[column] != axis.name) ++column;
-    if (column == record->names.size() && component.any() && axis.story == 0) {
-      out.samples.accel.col(static_cast<Eigen::Index>(a)).setZero();
-      continue;
-    }
-    if (column == record->names.size()) {
+    const auto at = std::find(record->names.begin(), record->names.end(), axis.name);
+    auto column = out.samples.accel.col(static_cast<Eigen::Index>(a));
+    if (at == record->names.end() && component.any() && axis.story == 0) {
+      column.setZero();
+    } else if (at == record->names.end()) {
       problems.push_back(fmt::format("{}: no channel '{}'", out.path, axis.name));
       complete = false;
-      continue;
+    } else {
+      column = axis.polarity * (axis.scale * values(at) - axis.offset);
     }
-    for (Eigen::Index i = 0; i < out.samples.accel.rows(); ++i)
-      out.samples.accel(i, static_cast<Eigen::Index>(a)) =
-          axis.polarity *
-          (axis.scale * record->accel_mps2[column][static_cast<std::size_t>(i)] - axis.offset);
   }
   if (!component.force.empty()) {
     const auto at = std::find(record->names.begin(), record->names.end(), component.force);
@@ -89,10 +88,7 @@ bool from_record(const Config& config, const estimator::ComponentTest& component
       problems.push_back(fmt::format("{}: no channel '{}'", out.path, component.force));
       return false;
     }
-    const std::vector<double>& force =
-        record->accel_mps2[static_cast<std::size_t>(at - record->names.begin())];
-    for (Eigen::Index i = 0; i < out.samples.accel.rows(); ++i)
-      out.samples.accel(i, out.samples.accel.cols() - 1) = force[static_cast<std::size_t>(i)];
+    out.samples.accel.rightCols(1) = values(at);
   }
   return complete;
 }
@@ -209,11 +205,7 @@ std::string names_of(const estimator::Plant& plant, const std::vector<ClockOffse
   std::vector<std::string> names;
   for (const ClockOffset& o : offsets)
     names.push_back(plant.axes[static_cast<std::size_t>(o.axis)].name);
-  const std::size_t count = names.size();
-  if (count > kMaxNames) names.resize(kMaxNames);
-  const std::string more =
-      count > kMaxNames ? fmt::format(" and {} more", count - kMaxNames) : std::string();
-  return fmt::format("{}{}", fmt::join(names, ", "), more);
+  return listed(names, kMaxNames);
 }
 
 /// Returns the seconds that a segment needs for the fewest frequencies in its band.
@@ -232,12 +224,11 @@ void add_clock_problems(const std::string& path, const estimator::Plant& plant,
   for (const auto& [key, offsets] : groups) {
     double mean = 0;
     for (const ClockOffset& o : offsets) mean += o.seconds / static_cast<double>(offsets.size());
-    problems.push_back(
-        fmt::format("{}: clocks apart: {} read {:.2f} s {} than {} in motion so slow that a "
-                    "building follows its base; measure again with one clock, or set delay_s of "
-                    "the later ones",
-                    path, names_of(plant, offsets), std::abs(mean), mean > 0 ? "later" : "earlier",
-                    plant.axes[static_cast<std::size_t>(key.first)].name));
+    problems.push_back(fmt::format(
+        "{}: clocks apart: {} read {:.2f} s {} than {} in motion so slow that a building follows "
+        "its base; measure again with one clock, or set delay_s of the later ones",
+        path, names_of(plant, offsets), std::abs(mean), mean > 0 ? "later" : "earlier",
+        plant.axes[static_cast<std::size_t>(key.first)].name));
   }
 }
 

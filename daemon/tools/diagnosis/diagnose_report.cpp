@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "daemon/tools/diagnosis/diagnose_report.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/core.h>
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
-#include "daemon/tools/diagnosis/diagnose_verdict.h"
+#include "daemon/base/words.h"
 #include "daemon/tools/diagnosis/where_map.h"
 #include "estimator/diagnose/model/free_run.h"
 #include "estimator/diagnose/model/law_port.h"
@@ -57,11 +58,10 @@ std::string gap_section(const DiagnoseOutput& o) {
     plot.add(a);
     plots.push_back(plot.svg());
   }
-  const std::string fitted =
-      o.diagnosis.after_of_all
-          ? "The training records do not determine the effects: the gap after is of a model fitted "
-            "to all records."
-          : "Both models were fitted to the training records alone.";
+  const std::string fitted = o.diagnosis.after_of_all
+                                 ? "The training records do not determine the effects: the gap "
+                                   "after is of a model fitted to all records."
+                                 : "Both models were fitted to the training records alone.";
   return "<h2>Gap between simulation and measurement</h2>\n"
          "<p>Free run from the measured " +
          driver_words(o) + " alone, as a share of " + html_text(denominator_words(o)) + ". " +
@@ -203,9 +203,8 @@ std::string where_section(const DiagnoseOutput& o) {
         {place(o, w.place), fmt::format("{:.3f}", w.ratio), when(o, w), band(w), peak(w)});
   return fmt::format(
              "<h2>Where</h2>\n<p>Each place in turn may have an arbitrary force. At the right "
-             "place "
-             "the rest of a linear building then fits: the rest that is not explained falls from "
-             "{:.3g} times the sensors' noise to 1.</p>\n",
+             "place the rest of a linear building then fits: the rest that is not explained falls "
+             "from {:.3g} times the sensors' noise to 1.</p>\n",
              o.diagnosis.ratio_before) +
          html_figure(
              where_map(o.plant.structure, o.plant.axes, o.diagnosis.map, o.diagnosis.ratio_before),
@@ -214,19 +213,13 @@ std::string where_section(const DiagnoseOutput& o) {
          html_table({"place", "left, times noise", "when", "frequencies", "largest"}, rows);
 }
 
-const char* why_it_lost(estimator::TrialOutcome outcome) {
-  switch (outcome) {
-    case estimator::TrialOutcome::fitted:
-      return "leaves more unexplained";
-    case estimator::TrialOutcome::screened_out:
-      return "others at its place explain more when the measured motion drives the law";
-    case estimator::TrialOutcome::diverged:
-      return "its free run diverges";
-    case estimator::TrialOutcome::other_law:
-      break;
-  }
-  return "its fitted parameters do not give the law of this name";
-}
+/// Says why a candidate lost, for estimator::TrialOutcome in its order.
+constexpr std::array kWhyItLost = {
+    "leaves more unexplained",
+    "others at its place explain more when the measured motion drives the law",
+    "its free run diverges",
+    "its fitted parameters do not give the law of this name",
+};
 
 /// Returns a table of the best trials. best: cost of the chosen one.
 std::string ranking(const DiagnoseOutput& o, const std::vector<estimator::Trial>& trials,
@@ -240,7 +233,8 @@ std::string ranking(const DiagnoseOutput& o, const std::vector<estimator::Trial>
       where += " and " + place(o, t.second->second);
     }
     rows.push_back({html_text(name), where, gap_percent(t.fraction),
-                    fmt::format("{:.0f}", t.cost - best), why_it_lost(t.outcome)});
+                    fmt::format("{:.0f}", t.cost - best),
+                    kWhyItLost[static_cast<std::size_t>(t.outcome)]});
   }
   const std::size_t more = trials.size() - rows.size();
   return html_table({"candidate", "place", "explains of the excess",
@@ -297,10 +291,9 @@ std::string provenance(const DiagnoseOutput& o) {
 std::string diagnosis_report(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   const std::vector<LawMotion> motions = law_motions(o);
-  std::string body = "<p class=\"verdict\">" + html_text(verdict_sentence(o)) + "</p>\n<p>" +
-                     html_text(gap_sentence(o)) + "</p>\n";
-  for (const std::string& text : {damping_sentence(o), noise_sentence(o)})
-    if (!text.empty()) body += "<p>" + html_text(text) + "</p>\n";
+  std::string body = "<p class=\"verdict\">" + html_text(verdict_sentence(o)) + "</p>\n" +
+                     html_paragraph(gap_sentence(o));
+  body += html_paragraph(damping_sentence(o)) + html_paragraph(noise_sentence(o));
   std::string items;
   for (const estimator::FoundEffect& f : d.effects)
     items += "<li>" +
@@ -308,16 +301,13 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
                        confidence_words(f)) +
              fmt::format("; it closes {:.0f} % of the gap.</li>\n",
                          100 * share_of_gap(o, f.before - f.after));
-  if (const std::string text = leading_sentence(o); !text.empty())
-    items += "<li>" + html_text(text) + "</li>\n";
-  if (d.effects.empty())
-    if (const std::string text = kind_sentence(o); !text.empty())
-      items += "<li>" + html_text(text) + "</li>\n";
-  for (const LawMotion& m : motions)
-    if (const std::string text = meaning(o, m); !text.empty())
-      items += "<li>" + html_text(text) + "</li>\n";
+  std::vector<std::string> more{leading_sentence(o)};
+  if (d.effects.empty()) more.push_back(kind_sentence(o));
+  for (const LawMotion& m : motions) more.push_back(meaning(o, m));
+  for (const std::string& text : more)
+    if (!text.empty()) items += "<li>" + html_text(text) + "</li>\n";
   if (!items.empty()) body += "<ul>\n" + items + "</ul>\n";
-  if (!d.reason.empty()) body += "<p>" + html_text(d.reason) + "</p>\n";
+  body += html_paragraph(d.reason);
   const std::string title = "Diagnosis of " + o.plant.structure.name;
   body += "<h1>" + html_text(title) + "</h1>\n";
   body += loop_section(motions) + where_section(o) + kind_section(o) + gap_section(o) +

@@ -182,9 +182,7 @@ std::string kind_section(const DiagnoseOutput& o) {
   const estimator::WhereEntry* where = of_kind(o);
   if (!where) return "";
   std::vector<std::vector<std::string>> rows;
-  for (const estimator::LawKind kind :
-       {estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
-        estimator::LawKind::hysteretic, estimator::LawKind::time_varying}) {
+  for (const estimator::LawKind kind : kReportedKinds) {
     std::string word = law_kind_word(kind);
     std::replace(word.begin(), word.end(), '_', ' ');
     rows.push_back(
@@ -203,12 +201,6 @@ std::string kind_section(const DiagnoseOutput& o) {
 
 std::string gap_percent(double share) {
   return fmt::format("{:.2f} %", 100 * share);
-}
-
-std::string with_capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
-    text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
 }
 
 std::string effect_words(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
@@ -241,8 +233,7 @@ std::string leading_sentence(const DiagnoseOutput& o) {
   found.chosen = best.trial;
   return fmt::format(
       "The best of the known effects is {}: with it the held-out gap falls from {} to {}. It is "
-      "not "
-      "established, because it leaves more unexplained than it should.",
+      "not established, because it leaves more unexplained than it should.",
       effect_words(o, found), gap_percent(best.before), gap_percent(best.after));
 }
 
@@ -253,10 +244,9 @@ std::string verdict_sentence(const DiagnoseOutput& o) {
     missing += (missing.empty() ? "" : ", and ") + effect_words(o, f);
   switch (d.verdict) {
     case estimator::Verdict::adequate:
-      return missing.empty()
-                 ? "Nothing is missing: the model explains the measurement as well as the sensors' "
-                   "noise allows."
-                 : "The model explains the measurement with " + missing + ".";
+      return missing.empty() ? "Nothing is missing: the model explains the measurement as well as "
+                               "the sensors' noise allows."
+                             : "The model explains the measurement with " + missing + ".";
     case estimator::Verdict::explained:
       return "The model lacks " + missing + "; with it the measurement is explained.";
     case estimator::Verdict::partly_explained:
@@ -330,17 +320,17 @@ std::string damping_sentence(const DiagnoseOutput& o) {
 
 std::string diagnosis_text(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
-  std::string out = verdict_sentence(o) + "\n  " + gap_sentence(o) + "\n";
-  if (const std::string text = damping_sentence(o); !text.empty()) out += "  " + text + "\n";
-  if (const std::string text = noise_sentence(o); !text.empty()) out += "  " + text + "\n";
+  std::vector<std::string> lines{gap_sentence(o), damping_sentence(o), noise_sentence(o)};
   for (const estimator::FoundEffect& f : d.effects)
-    out += fmt::format("  {}, {}: {}; it closes {:.0f} % of the gap\n", grade_word(grade_of(f)),
-                       effect_words(o, f), confidence_words(f),
-                       100 * share_of_gap(o, f.before - f.after));
-  if (const std::string text = leading_sentence(o); !text.empty()) out += "  " + text + "\n";
-  if (const std::string text = kind_sentence(o); d.effects.empty() && !text.empty())
-    out += "  " + text + "\n";
-  if (!d.reason.empty()) out += "  " + d.reason + "\n";
+    lines.push_back(fmt::format("{}, {}: {}; it closes {:.0f} % of the gap",
+                                grade_word(grade_of(f)), effect_words(o, f), confidence_words(f),
+                                100 * share_of_gap(o, f.before - f.after)));
+  lines.push_back(leading_sentence(o));
+  if (d.effects.empty()) lines.push_back(kind_sentence(o));
+  lines.push_back(d.reason);
+  std::string out = verdict_sentence(o) + "\n";
+  for (const std::string& line : lines)
+    if (!line.empty()) out += "  " + line + "\n";
   return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -21,6 +22,11 @@ struct DiagnoseOutput {
   std::size_t holdout_from;  ///< index of the first held-out record
   const estimator::Diagnosis& diagnosis;
 };
+
+/// Returns the content of diagnosis.json, schema framewatch.diagnosis/1 (docs/formats.md).
+std::string diagnosis_json(const DiagnoseOutput& output);
+/// Returns the content of report.html, a self-contained page.
+std::string diagnosis_report(const DiagnoseOutput& output);
 
 // The functions below describe a diagnosis for the people who look after the building. All but
 // kind_section() return text, not HTML.
@@ -58,6 +64,11 @@ std::string confidence_words(const estimator::FoundEffect& effect);
 /// if no element was examined or a linear one is enough.
 std::string kind_sentence(const DiagnoseOutput& output);
 
+/// The kinds of law whose share of a force the report gives.
+inline constexpr std::array kReportedKinds = {
+    estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
+    estimator::LawKind::hysteretic, estimator::LawKind::time_varying};
+
 /// Returns HTML of kind_sentence() with pictures: the force beyond a linear element over
 /// deformation, and its means over deformation and over rate. "" if kind_sentence() is.
 std::string kind_section(const DiagnoseOutput& output);
@@ -81,7 +92,6 @@ std::string noise_sentence(const DiagnoseOutput& output);
 /// Returns the text that the command prints: all of these.
 std::string diagnosis_text(const DiagnoseOutput& output);
 
-std::string gap_percent(double share);       ///< "12.34 %"
-std::string with_capital(std::string text);  ///< with a capital first letter
+std::string gap_percent(double share);  ///< "12.34 %"
 
 }  // namespace framewatch::daemon

@@ -42,9 +42,8 @@ class Plans {
     const double width = std::max(x_.back(), kPlan / 2) + 2 * kMargin;
     const double height = std::max(y_.back(), kPlan / 4) + 2 * kMargin;
     out_ += fmt::format(
-        "<svg class=\"plot\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-        "height=\"{1:.0f}\" role=\"img\"><title>{2}</title><text class=\"ti\" x=\"4\" "
-        "y=\"14\">{2}</text>",
+        "<svg class=\"plot\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+        "role=\"img\"><title>{2}</title><text class=\"ti\" x=\"4\" y=\"14\">{2}</text>",
         width, height, story > 0 ? fmt::format("story and floor {}", story) : "base");
     if (story > 0) draw_panels(story);
     for (int f = 0; f < s_.frames(); ++f) draw_frame(story, f);

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
+#include "daemon/base/words.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -24,19 +25,12 @@ std::string number(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-template <class Range, class Text>
-std::string list(const Range& items, const Text& text, const char* between = ", ") {
-  std::string out;
-  for (const auto& item : items) out += (out.empty() ? "" : between) + text(item);
-  return "[" + out + "]";
-}
-
 std::string names(const std::vector<std::string>& items) {
-  return list(items, quoted);
+  return bracketed(items, quoted);
 }
 
 std::string numbers(const std::vector<double>& items) {
-  return list(items, number);
+  return bracketed(items, number);
 }
 
 bool all_equal(const std::vector<double>& items) {
@@ -57,16 +51,17 @@ std::string node_mass(const estimator::Structure& s) {
   if (all_equal(s.node_mass)) return number(s.node_mass.front());
   const auto row = static_cast<std::size_t>(std::max(s.m(), 1));
   const auto floor = row * static_cast<std::size_t>(std::max(s.n(), 1));
-  return list(
+  return bracketed(
       pieces(s.node_mass, floor),
-      [&](const std::vector<double>& nodes) { return list(pieces(nodes, row), numbers); }, ",\n  ");
+      [&](const std::vector<double>& nodes) { return bracketed(pieces(nodes, row), numbers); },
+      ",\n  ");
 }
 
 /// Returns a grid [story][frame]: each story's stiffness divided among its frames by the plan.
 std::string frame_stiffness(const std::vector<double>& stories, const std::vector<double>& spans) {
   const std::vector<double> shares = shares_of_frames(spans);
   if (all_equal(stories) && all_equal(shares)) return number(stories.front() * shares.front());
-  return list(stories, [&](double story) {
+  return bracketed(stories, [&](double story) {
     std::vector<double> frames = shares;
     for (double& stiffness : frames) stiffness *= story;
     return numbers(frames);
@@ -128,8 +123,7 @@ std::string design_section(const BuildingPlan& p) {
       "[structure.design]\n",
       p.stiffness_from,
       p.structure.panels() > 0 ? "\n# As long as they are shares, check finds the plan symmetric: "
-                                 "no finding about the "
-                                 "building."
+                                 "no finding about the building."
                                : "");
   if (!p.story_kx_npm.empty())
     out += fmt::format("kx_npm = {}  # N/m of each frame that moves along x\n",
@@ -194,13 +188,11 @@ std::string building_toml(const BuildingPlan& p) {
     out +=
         "\n# The accelerometers, where the record's headers say they are: azimuth_deg is where the "
         "positive\n# axis points, x_m and y_m are from the first frames; `framewatch check` says "
-        "what "
-        "they show.\n# noise_mps2_per_rthz (data sheet) is worth giving.\n";
+        "what they show.\n# noise_mps2_per_rthz (data sheet) is worth giving.\n";
   else
     out +=
         "\n# The accelerometers: every frame has one on every floor, the base one in each "
-        "direction. "
-        "An\n"
+        "direction. An\n"
         "# axis mounted backwards has polarity = -1; noise_mps2_per_rthz (data sheet) is worth "
         "giving.\n";
   const auto lcm = std::find_if(p.channels.begin(), p.channels.end(), [](const auto& channel) {

@@ -8,7 +8,6 @@
 #include "daemon/base/printable.h"
 #include "daemon/tools/init/building_plan.h"
 #include "daemon/tools/init/station_layout.h"
-#include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -79,14 +78,13 @@ class StationPlacing {
     if (!by_header)
       reading_.open.push_back(
           {"channel",
-           fmt::format(
-               "Where is {}{}? {}. Its floor (2, base, roof), with its direction where that "
-               "is not said (2:x), or unused.",
-               printable(name),
-               columns_[c].header.place.empty()
-                   ? ""
-                   : fmt::format(" ({})", printable(columns_[c].header.place)),
-               why),
+           fmt::format("Where is {}{}? {}. Its floor (2, base, roof), with its direction where "
+                       "that is not said (2:x), or unused.",
+                       printable(name),
+                       columns_[c].header.place.empty()
+                           ? ""
+                           : fmt::format(" ({})", printable(columns_[c].header.place)),
+                       why),
            "",
            "",
            {},
@@ -236,12 +234,11 @@ class ChannelPlacing {
   }
 
   void ask_reading(const ColumnPlaces& found, std::size_t column) {
-    open(
-        "titles",
-        fmt::format("{} can be read in two ways:\n  frames      {}\n  directions  {}\nWhich one do "
-                    "the titles mean?",
-                    printable(columns_[column].name), found.as_frame, found.as_direction),
-        "");
+    open("titles",
+         fmt::format("{} can be read in two ways:\n  frames      {}\n  directions  {}\nWhich one "
+                     "do the titles mean?",
+                     printable(columns_[column].name), found.as_frame, found.as_direction),
+         "");
   }
 
   void ask_place(const Place& place) {
@@ -278,73 +275,8 @@ class ChannelPlacing {
 
 }  // namespace
 
-std::string ask_base(const BuildingDraft&) {
-  return "Which level is the base, whose motion drives the stories above it: ground (the first "
-         "floor) "
-         "or\nbasement?";
-}
-
-bool asks_base(const BuildingDraft& d) {
-  return d.station && d.station->ground_can_be_base && d.station->basement_can_be_base;
-}
-
-std::string understood_base(const BuildingDraft& d) {
-  return d.station_plan.base_is_basement ? "basement" : "ground";
-}
-
-std::string ask_plan(const BuildingDraft&) {
-  return "Lengths of the plan along x and y, m, such as 40x25? Sensors are said to be at its "
-         "sides.";
-}
-
-std::string understood_plan(const BuildingDraft& d) {
-  return fmt::format("{:g} m along x, {:g} m along y", d.station_plan.x_m, d.station_plan.y_m);
-}
-
-std::string ask_stories(const BuildingDraft& d) {
-  std::string out = "How many stories does it have above its base?";
-  if (d.station && d.station->highest_floor > 0)
-    out += fmt::format(" The headers name floors up to {}{}.", d.station->highest_floor,
-                       d.station->has_roof ? ", and a roof" : "");
-  return out;
-}
-
-std::string take_base(const std::string& text, BuildingDraft& d, ColumnCache&) {
-  if (text != "ground" && text != "basement") return "ground or basement";
-  d.station_plan.base_is_basement = text == "basement";
-  return "";
-}
-
-std::string initial_directions(const BuildingDraft& d) {
-  if (!d.station || d.station->along_x == d.station->along_y) return "both";
-  return d.station->along_x ? "x" : "y";
-}
-
-std::string take_plan(const std::string& text, BuildingDraft& d, ColumnCache&) {
-  const std::size_t by = text.find('x');
-  const auto x_m = drivers::parse_number(drivers::trimmed(text.substr(0, by)));
-  const auto y_m = by == std::string::npos
-                       ? std::nullopt
-                       : drivers::parse_number(drivers::trimmed(text.substr(by + 1)));
-  const auto possible = [](double length_m) { return length_m > 0 && length_m <= 1000; };
-  if (!x_m || !y_m || !possible(*x_m) || !possible(*y_m))
-    return "lengths along x and along y in m, such as 40x25";
-  d.station_plan.x_m = *x_m;
-  d.station_plan.y_m = *y_m;
-  return "";
-}
-
-bool asks_plan(const BuildingDraft& d) {
-  return d.station && ((d.station->needs_plan_x && d.plan.structure.m() < 2) ||
-                       (d.station->needs_plan_y && d.plan.structure.n() < 2));
-}
-
-void place_station(const InitAnswers& answers, InitReading& reading) {
-  StationPlacing(answers, reading).place();
-}
-
 void place_channels(const InitAnswers& answers, InitReading& reading) {
-  if (reading.draft.station) return place_station(answers, reading);
+  if (reading.draft.station) return StationPlacing(answers, reading).place();
   ChannelPlacing(answers, reading).place();
 }
 

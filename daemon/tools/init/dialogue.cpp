@@ -52,8 +52,7 @@ class Dialogue {
   std::optional<BuildingPlan> run() {
     terminal_.say(
         fmt::format("A building, described for framewatch in {}. Enter takes what stands in "
-                    "[brackets]; back goes "
-                    "to\nthe question before, quit leaves without a file.\n",
+                    "[brackets]; back goes to\nthe question before, quit leaves without a file.\n",
                     printable(path_)));
     while (!left_) {
       const InitReading reading = read_answers(answers_, false, files_);

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/init/questions.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
 #include "daemon/tools/init/answer_text.h"
-#include "daemon/tools/init/channel_questions.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {
@@ -110,8 +108,7 @@ std::string take_directions(const std::string& text, Draft& d, ColumnCache&) {
 std::string ask_bays(const Draft& d) {
   if (d.station)
     return "Bays of the plan along x and along y, such as 2x1? With 0x0 one frame stands for all "
-           "of "
-           "its\ndirection; torsion needs frames.";
+           "of its\ndirection; torsion needs frames.";
   std::string out =
       "Bays of the plan along x and along y, such as 2x1? Every frame needs an accelerometer on "
       "every\nfloor: ";
@@ -247,6 +244,44 @@ std::string take_rate(const std::string& text, Draft& d, ColumnCache&) {
   return "";
 }
 
+std::string initial_directions(const Draft& d) {
+  if (!d.station || d.station->along_x == d.station->along_y) return "both";
+  return d.station->along_x ? "x" : "y";
+}
+
+std::string ask_stories(const Draft& d) {
+  std::string out = "How many stories does it have above its base?";
+  if (d.station && d.station->highest_floor > 0)
+    out += fmt::format(" The headers name floors up to {}{}.", d.station->highest_floor,
+                       d.station->has_roof ? ", and a roof" : "");
+  return out;
+}
+
+std::string take_base(const std::string& text, Draft& d, ColumnCache&) {
+  if (text != "ground" && text != "basement") return "ground or basement";
+  d.station_plan.base_is_basement = text == "basement";
+  return "";
+}
+
+std::string take_plan(const std::string& text, Draft& d, ColumnCache&) {
+  const std::size_t by = text.find('x');
+  const auto x_m = drivers::parse_number(drivers::trimmed(text.substr(0, by)));
+  const auto y_m = by == std::string::npos
+                       ? std::nullopt
+                       : drivers::parse_number(drivers::trimmed(text.substr(by + 1)));
+  const auto possible = [](double length_m) { return length_m > 0 && length_m <= 1000; };
+  if (!x_m || !y_m || !possible(*x_m) || !possible(*y_m))
+    return "lengths along x and along y in m, such as 40x25";
+  d.station_plan.x_m = *x_m;
+  d.station_plan.y_m = *y_m;
+  return "";
+}
+
+bool asks_plan(const Draft& d) {
+  return d.station && ((d.station->needs_plan_x && d.plan.structure.m() < 2) ||
+                       (d.station->needs_plan_y && d.plan.structure.n() < 2));
+}
+
 template <const char* Text>
 std::string fixed(const Draft&) {
   return Text;
@@ -271,29 +306,20 @@ constexpr char kAskFloors[] =
 constexpr char kAskMass[] =
     "Mass of each floor with what it carries: 18000 (kg), 18 t, one for all or each; or 500 kg/m2?";
 constexpr char kAskArea[] = "Area of a floor, m^2?";
+constexpr char kAskBase[] =
+    "Which level is the base, whose motion drives the stories above it: ground (the first "
+    "floor) or\nbasement?";
+constexpr char kAskPlan[] =
+    "Lengths of the plan along x and y, m, such as 40x25? Sensors are said to be at its "
+    "sides.";
 constexpr char kAskRate[] = "Samples a second of every accelerometer?";
 constexpr char kNone[] = "none", kCan0[] = "can0", kBuilding[] = "building", k100[] = "100",
                kGround[] = "ground";
 
-std::string initial_bays(const Draft& d) {
-  return d.has_x && d.has_y && !d.station ? "" : "0x0";
-}
-std::string initial_floors(const Draft& d) {
-  return d.station ? "rigid" : "flexible";
-}
-std::string initial_live(const Draft& d) {
-  return d.plan.record.empty() ? "" : "none";
-}
-std::string lengths_x(const Draft& d) {
-  return list_text(d.plan.structure.span_x) + " m";
-}
-std::string lengths_y(const Draft& d) {
-  return list_text(d.plan.structure.span_y) + " m";
-}
-
 const InitQuestion kQuestions[] = {
     {"record", "record", fixed<kAskRecord>, always, fixed<kNone>, take_record, understood_record},
-    {"live", "live samples", fixed<kAskLive>, always, initial_live, take_live,
+    {"live", "live samples", fixed<kAskLive>, always,
+     [](const Draft& d) { return std::string(d.plan.record.empty() ? "" : "none"); }, take_live,
      [](const Draft& d) { return d.live; }},
     {"interface", "CAN bus", fixed<kAskInterface>, [](const Draft& d) { return d.live == "can"; },
      fixed<kCan0>, take_interface, [](const Draft& d) { return d.plan.can_interface; }},
@@ -304,26 +330,40 @@ const InitQuestion kQuestions[] = {
      }},
     {"building", "name", fixed<kAskName>, always, fixed<kBuilding>, take_name,
      [](const Draft& d) { return d.plan.structure.name; }},
-    {"base", "base", ask_base, asks_base, fixed<kGround>, take_base, understood_base},
+    {"base", "base", fixed<kAskBase>,
+     [](const Draft& d) {
+       return d.station && d.station->ground_can_be_base && d.station->basement_can_be_base;
+     },
+     fixed<kGround>, take_base,
+     [](const Draft& d) {
+       return std::string(d.station_plan.base_is_basement ? "basement" : "ground");
+     }},
     {"stories", "stories", ask_stories, always, must, take_stories,
      [](const Draft& d) { return fmt::format("{}", d.plan.structure.stories); }},
     {"directions", "directions", fixed<kAskDirections>, always, initial_directions, take_directions,
      [](const Draft& d) {
        return std::string(!d.has_y ? "x" : !d.has_x ? "y" : "x and y");
      }},
-    {"bays", "bays", ask_bays, always, initial_bays, take_bays, understood_bays},
+    {"bays", "bays", ask_bays, always,
+     [](const Draft& d) { return std::string(d.has_x && d.has_y && !d.station ? "" : "0x0"); },
+     take_bays, understood_bays},
     {"span-x", "spans along x", fixed<kAskSpanX>,
-     [](const Draft& d) { return d.plan.structure.m() > 1; }, must, take_span_x, lengths_x},
+     [](const Draft& d) { return d.plan.structure.m() > 1; }, must, take_span_x,
+     [](const Draft& d) { return list_text(d.plan.structure.span_x) + " m"; }},
     {"span-y", "spans along y", fixed<kAskSpanY>,
-     [](const Draft& d) { return d.plan.structure.n() > 1; }, must, take_span_y, lengths_y},
-    {"plan", "lengths of the plan", ask_plan, asks_plan, must, take_plan, understood_plan},
+     [](const Draft& d) { return d.plan.structure.n() > 1; }, must, take_span_y,
+     [](const Draft& d) { return list_text(d.plan.structure.span_y) + " m"; }},
+    {"plan", "lengths of the plan", fixed<kAskPlan>, asks_plan, must, take_plan,
+     [](const Draft& d) {
+       return fmt::format("{:g} m along x, {:g} m along y", d.station_plan.x_m, d.station_plan.y_m);
+     }},
     {"heights", "story heights", fixed<kAskHeights>, always, must, take_heights,
      understood_heights},
     {"floors", "floors", fixed<kAskFloors>,
      [](const Draft& d) {
        return d.station || d.plan.structure.n() > 1 || d.plan.structure.m() > 1;
      },
-     initial_floors, take_floors,
+     [](const Draft& d) { return std::string(d.station ? "rigid" : "flexible"); }, take_floors,
      [](const Draft& d) {
        return std::string(d.plan.structure.floor == estimator::FloorModel::rigid ? "rigid"
                                                                                  : "flexible");

@@ -18,8 +18,6 @@ namespace {
 constexpr double kStudyDuration_s = 15;
 constexpr double kStudyEvery_s = 1;
 constexpr double kRandomNoise = 0.01;
-/// One window per second is used, so windows need not be solved every hundredth of a second.
-constexpr double kStudyHop_s = 0.25;
 
 void collect(const Eigen::VectorXd& theta, const estimator::ParameterTable& table,
              const Eigen::VectorXd& truth, ErrorsByKind& errors) {
@@ -80,7 +78,14 @@ void add_bounds(const estimator::Structure& structure, const estimator::Paramete
   }
 }
 
-AccuracyRow merged(const std::string& name, std::vector<SeedResult> results) {
+/// Runs `run` with seeds 1 .. seeds, and merges the results.
+template <typename Run>
+AccuracyRow row_of(const std::string& name, const std::string& what, int seeds,
+                   const Workers& workers, const Run& run) {
+  std::vector<SeedResult> results(static_cast<std::size_t>(seeds));
+  workers.run(what, seeds, [&](int i) {
+    results[static_cast<std::size_t>(i)] = run(static_cast<std::uint64_t>(i) + 1);
+  });
   AccuracyRow row{name, {}, {}, {}};
   for (const SeedResult& result : results)
     for (std::size_t kind = 0; kind < 4; ++kind) {
@@ -94,7 +99,6 @@ AccuracyRow merged(const std::string& name, std::vector<SeedResult> results) {
 }
 
 constexpr double kSweepDuration_s = 10;
-constexpr double kSweepHop_s = 0.25;
 
 struct Piece {
   Eigen::VectorXd paper, denoised, matched;
@@ -105,11 +109,8 @@ Eigen::VectorXd matched(const estimator::Structure& structure,
                         const estimator::PlanMotion& motion, double noise_ratio,
                         std::uint64_t seed) {
   const ExactRecord record = exact_record(structure, truth, motion, noise_ratio, kSweepDuration_s);
-  estimator::PipelineConfig config{
-      structure, record.axes, {}, perturbed_design(table, truth, 0.1, 0.3, seed)};
-  config.options.rate_hz = kTrialRate_hz;
-  config.options.hop_s = kSweepHop_s;
-  const auto windows = run_windows(config, with_noise(record, seed), 0, kSweepHop_s);
+  const auto windows = run_windows(trial_config(structure, record, truth, 0.1, 0.3, seed),
+                                   with_noise(record, seed), 0, kTrialHop_s);
   if (windows.empty()) return Eigen::VectorXd::Constant(table.size(), NAN);
   return Eigen::Map<const Eigen::VectorXd>(windows.back().solution.data(), table.size());
 }
@@ -147,10 +148,7 @@ SeedResult run_seed(const estimator::Structure& structure, const Eigen::VectorXd
   const estimator::PlanMotion motion = oblique_motion(seed);
   const ExactRecord record = exact_record(structure, truth, motion, noise_ratio, kStudyDuration_s);
   const Eigen::MatrixXd noisy = with_noise(record, seed);
-  estimator::PipelineConfig config{
-      structure, record.axes, {}, perturbed_design(table, truth, 0.1, 0.3, seed)};
-  config.options.rate_hz = kTrialRate_hz;
-  config.options.hop_s = kStudyHop_s;
+  estimator::PipelineConfig config = trial_config(structure, record, truth, 0.1, 0.3, seed);
   SeedResult result;
   const auto run = [&](Method method) {
     const auto windows = run_windows(config, noisy, kFirstEnd_s, kStudyEvery_s);
@@ -178,12 +176,9 @@ double AccuracyRow::least_median(int kind) const {
 }
 
 AccuracyRow study_accuracy(const AccuracyCase& c, int seeds, const Workers& workers) {
-  std::vector<SeedResult> results(static_cast<std::size_t>(seeds));
-  workers.run(c.name, seeds, [&](int i) {
-    results[static_cast<std::size_t>(i)] =
-        run_seed(c.structure, c.truth, c.noise_ratio, static_cast<std::uint64_t>(i) + 1);
+  return row_of(c.name, c.name, seeds, workers, [&](std::uint64_t seed) {
+    return run_seed(c.structure, c.truth, c.noise_ratio, seed);
   });
-  return merged(c.name, std::move(results));
 }
 
 ErrorsByKind study_exact_motion(const AccuracyCase& c, int motions, const Workers& workers) {
@@ -196,7 +191,7 @@ ErrorsByKind study_exact_motion(const AccuracyCase& c, int motions, const Worker
     trial.truth = c.truth;
     trial.design = perturbed_design(table, c.truth, 0.1, 0.3, seed);
     trial.motion = oblique_motion(seed);
-    trial.options.hop_s = kStudyHop_s;
+    trial.options.hop_s = kTrialHop_s;
     collect_errors(run_trial(trial), table, c.truth, pieces[static_cast<std::size_t>(i)]);
   });
   ErrorsByKind out;
@@ -206,14 +201,11 @@ ErrorsByKind study_exact_motion(const AccuracyCase& c, int motions, const Worker
 }
 
 AccuracyRow study_random_buildings(int seeds, const Workers& workers) {
-  std::vector<SeedResult> results(static_cast<std::size_t>(seeds));
-  workers.run("random buildings", seeds, [&](int i) {
-    const auto seed = static_cast<std::uint64_t>(i) + 1;
-    const RandomBuilding building = random_building(seed);
-    results[static_cast<std::size_t>(i)] =
-        run_seed(building.structure, building.truth, kRandomNoise, seed);
-  });
-  return merged("random buildings, 1 %", std::move(results));
+  return row_of("random buildings, 1 %", "random buildings", seeds, workers,
+                [](std::uint64_t seed) {
+                  const RandomBuilding building = random_building(seed);
+                  return run_seed(building.structure, building.truth, kRandomNoise, seed);
+                });
 }
 
 NoiseSweep sweep_noise(const estimator::GroundMotion& motion, int seeds, const Workers& workers) {

@@ -63,6 +63,19 @@ Eigen::MatrixXd with_noise(const ExactRecord& record, std::uint64_t seed) {
   return out;
 }
 
+estimator::PipelineConfig trial_config(const estimator::Structure& structure,
+                                       const ExactRecord& record, const Eigen::VectorXd& truth,
+                                       double k_off, double other_off, std::uint64_t seed) {
+  estimator::PipelineConfig out{
+      structure,
+      record.axes,
+      {},
+      perturbed_design(estimator::ParameterTable(structure), truth, k_off, other_off, seed)};
+  out.options.rate_hz = kTrialRate_hz;
+  out.options.hop_s = kTrialHop_s;
+  return out;
+}
+
 std::vector<CheckedWindow> run_checked_windows(const estimator::PipelineConfig& config,
                                                const Eigen::MatrixXd& accel, double from_s,
                                                double every_s) {

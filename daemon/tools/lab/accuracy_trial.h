@@ -15,6 +15,9 @@ namespace framewatch::daemon {
 
 /// Sampling rate of the accuracy trials.
 inline constexpr double kTrialRate_hz = 100;
+/// Distance of the trials' windows, s. They use few windows a second, so windows need not be solved
+/// every hundredth of a second.
+inline constexpr double kTrialHop_s = 0.25;
 /// Seconds of a motion that the paper's batch least squares uses.
 inline constexpr double kPaper_s = 10;
 /// Two-sided 95 % point of Student's t with 19 degrees of freedom: batch means have 20 blocks.
@@ -36,6 +39,12 @@ ExactRecord exact_record(const estimator::Structure& structure, const Eigen::Vec
                          double duration_s);
 /// Returns the record's accelerations with the axes' noise added.
 Eigen::MatrixXd with_noise(const ExactRecord& record, std::uint64_t seed);
+
+/// Returns the configuration that estimates a record. The design is off by up to `k_off` and
+/// `other_off` (perturbed_design()).
+estimator::PipelineConfig trial_config(const estimator::Structure& structure,
+                                       const ExactRecord& record, const Eigen::VectorXd& truth,
+                                       double k_off, double other_off, std::uint64_t seed);
 
 /// Returns full windows of a pipeline for accelerations (instants x axes, the first at time 0). The
 /// first window ends at from_s or later, the others follow every_s apart.

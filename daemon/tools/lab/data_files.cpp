@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "daemon/tools/simulation/scenario_motion.h"
 #include "drivers/formats/record_file.h"
 #include "drivers/records/record_builder.h"
@@ -33,27 +35,20 @@ std::optional<estimator::GroundMotion> hachinohe_ns(const std::string& data) {
 }
 
 const std::vector<MeasuredRun>& measured_runs() {
-  static const std::vector<MeasuredRun> runs = {
-      {"Northridge",
-       {"Ground_Floor/(Northridge)Xsens_DOT_20250306_122607.csv.gz",
-        "1st_Floor/(Northridge)Xsens_DOT_20250306_122607.csv.gz",
-        "2nd_Floor/(Northridge)left_leg_20250306_122607.csv.gz",
-        "3rd_Floor_top/(Northridge)Xsens_DOT_20250306_122607.csv.gz"}},
-      {"Sine_1.0",
-       {"Ground_Floor/(Sine_1.0)Xsens_DOT_20250306_122116.csv.gz",
-        "1st_Floor/(Sine_1.0)Xsens_DOT_20250306_122116.csv.gz",
-        "2nd_Floor/(Sine_1.0)left_leg_20250306_122116.csv.gz",
-        "3rd_Floor_top/(Sine_1.0)Xsens_DOT_20250306_122116.csv.gz"}},
-      {"Sine_1.5",
-       {"Ground_Floor/(Sine_1.5)Xsens_DOT_20250306_121949.csv.gz",
-        "1st_Floor/(Sine_1.5)Xsens_DOT_20250306_121949.csv.gz",
-        "2nd_Floor/(Sine_1.5)left_leg_20250306_121949.csv.gz",
-        "3rd_Floor_top/(Sine_1.5)Xsens_DOT_20250306_121949.csv.gz"}},
-      {"Sine_2.0",
-       {"Ground_Floor/(Sine_2.0)Xsens_DOT_20250306_122410.csv.gz",
-        "1st_Floor/(Sine_2.0)Xsens_DOT_20250306_122410.csv.gz",
-        "2nd_Floor/(Sine_2.0)left_leg_20250306_122410.csv.gz",
-        "3rd_Floor_top/(Sine_2.0)Xsens_DOT_20250306_122410.csv.gz"}}};
+  static const std::vector<MeasuredRun> runs = [] {
+    std::vector<MeasuredRun> out;
+    for (const auto& [name, time] :
+         {std::pair{"Northridge", "122607"}, std::pair{"Sine_1.0", "122116"},
+          std::pair{"Sine_1.5", "121949"}, std::pair{"Sine_2.0", "122410"}}) {
+      out.push_back({name, {}});
+      for (const auto& [level, sensor] :
+           {std::pair{"Ground_Floor", "Xsens_DOT"}, std::pair{"1st_Floor", "Xsens_DOT"},
+            std::pair{"2nd_Floor", "left_leg"}, std::pair{"3rd_Floor_top", "Xsens_DOT"}})
+        out.back().files.push_back(
+            fmt::format("{}/({}){}_20250306_{}.csv.gz", level, name, sensor, time));
+    }
+    return out;
+  }();
   return runs;
 }
 

@@ -12,8 +12,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kLevels[] = {0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30};
-constexpr double kFadingDuration_s = 15, kFadingFirstEnd_s = 10, kFadingEvery_s = 1,
-                 kFadingHop_s = 0.25;
+constexpr double kFadingDuration_s = 15, kFadingFirstEnd_s = 10, kFadingEvery_s = 1;
 constexpr double kSilence_mps2 = 1e-3;
 constexpr double kBias_mps2 = 0.05, kRamp_mps3 = 0.001;
 
@@ -59,9 +58,7 @@ ExcitationSweep study_excitation(const std::string& name, const estimator::Struc
     level.noise_ratio = kLevels[piece % kCount];
     const ExactRecord record =
         exact_record(structure, truth, oblique_motion(seed), level.noise_ratio, kFadingDuration_s);
-    estimator::PipelineConfig config{
-        structure, record.axes, {}, perturbed_design(table, truth, 0.2, 0.4, seed)};
-    config.options.hop_s = kFadingHop_s;
+    estimator::PipelineConfig config = trial_config(structure, record, truth, 0.2, 0.4, seed);
     if (!noise_configured)
       for (estimator::SensorAxis& axis : config.axes) axis.noise_density = 0;
     count(run_windows(config, with_noise(record, seed), kFadingFirstEnd_s, kFadingEvery_s), table,
@@ -113,9 +110,7 @@ double change_by_bias(const estimator::Structure& structure, const Eigen::Vector
   const estimator::ParameterTable table(structure);
   const ExactRecord record =
       exact_record(structure, truth, oblique_motion(seed), 0, kFadingDuration_s);
-  estimator::PipelineConfig config{
-      structure, record.axes, {}, perturbed_design(table, truth, 0.1, 0.3, seed)};
-  config.options.hop_s = kFadingHop_s;
+  const estimator::PipelineConfig config = trial_config(structure, record, truth, 0.1, 0.3, seed);
   Eigen::MatrixXd biased = record.accel_abs;
   for (Eigen::Index i = 0; i < biased.rows(); ++i)
     biased.row(i).array() += kBias_mps2 + kRamp_mps3 * static_cast<double>(i) / kTrialRate_hz;

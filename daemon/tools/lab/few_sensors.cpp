@@ -5,7 +5,6 @@
 #include <cmath>
 #include <mutex>
 #include <numbers>
-#include <utility>
 
 #include <fmt/core.h>
 
@@ -80,6 +79,18 @@ void put_on_soil(estimator::Structure& s, Eigen::VectorXd& theta,
   }
   theta = out;
   for (estimator::SensorAxis& axis : axes) axis.story += 1;
+}
+
+void run_rows(const std::string& what, int seeds, const Workers& workers,
+              std::vector<FewSensorsRow>& rows) {
+  std::mutex mutex;
+  workers.run(what, static_cast<int>(rows.size()) * seeds, [&](int piece) {
+    TallTrial trial = rows[static_cast<std::size_t>(piece / seeds)].trial;
+    trial.seed = static_cast<std::uint64_t>(piece % seeds + 1);
+    const FewSensorsErrors errors = few_sensors_errors(tall_record(trial), trial.from_s);
+    const std::lock_guard lock(mutex);
+    rows[static_cast<std::size_t>(piece / seeds)].errors.add(errors);
+  });
 }
 
 }  // namespace
@@ -183,22 +194,6 @@ FewSensorsErrors few_sensors_errors(const TallRecord& record, double from_s) {
   out.damping = errors[static_cast<std::size_t>(estimator::ParameterKind::frame_damping)];
   return out;
 }
-
-namespace {
-
-void run_rows(const std::string& what, int seeds, const Workers& workers,
-              std::vector<FewSensorsRow>& rows) {
-  std::mutex mutex;
-  workers.run(what, static_cast<int>(rows.size()) * seeds, [&](int piece) {
-    TallTrial trial = rows[static_cast<std::size_t>(piece / seeds)].trial;
-    trial.seed = static_cast<std::uint64_t>(piece % seeds + 1);
-    const FewSensorsErrors errors = few_sensors_errors(tall_record(trial), trial.from_s);
-    const std::lock_guard lock(mutex);
-    rows[static_cast<std::size_t>(piece / seeds)].errors.add(errors);
-  });
-}
-
-}  // namespace
 
 std::vector<FewSensorsRow> study_few_sensors(int seeds, const Workers& workers) {
   std::vector<FewSensorsRow> rows;

@@ -39,13 +39,6 @@ void print_missing_data(const Reproduction& all) {
                "one is evaluated\n");
 }
 
-bool write(const std::string& path, const std::string& text) {
-  drivers::TextOutput file;
-  if (file.open(path) && file.write(text) && file.close()) return true;
-  refuse("reproduce", path + ": " + file.error());
-  return false;
-}
-
 Reproduction measured(const ReproduceArguments& a) {
   ProgressLine progress("reproduce", a.quiet);
   std::string part;
@@ -72,9 +65,12 @@ int reproduce(const ReproduceArguments& a) {
   if (error) return refuse("reproduce", fmt::format("{}: {}", a.out, error.message()));
   const Reproduction all = measured(a);
   if (!a.quiet) print_missing_data(all);
-  if (!write(a.out + "/report.html", reproduction_html(all, a.only))) return kBadInput;
   const bool tables = a.only.empty() || !all.few_sensors.empty();
-  if (tables && !write(a.out + "/accuracy.md", accuracy_markdown(all))) return kBadInput;
+  std::string why =
+      drivers::write_text_file(a.out + "/report.html", reproduction_html(all, a.only));
+  if (why.empty() && tables)
+    why = drivers::write_text_file(a.out + "/accuracy.md", accuracy_markdown(all));
+  if (!why.empty()) return refuse("reproduce", why);
 
   const std::vector<Promise> list = promises(all);
   const auto broken =

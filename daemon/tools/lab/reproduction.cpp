@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/reproduction.h"
 
-#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -16,7 +15,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kReproductionHop_s = 0.25;
 constexpr int kExcitationSeeds = 8;
 constexpr int kExactMotions = 4;
 constexpr double kSilence_h = 1;
@@ -47,11 +45,8 @@ BuildingReproduction building(const AccuracyCase& c, const estimator::GroundMoti
   out.paper = batch_least_squares(
       c.structure, table, exact_motion(c.structure, table, c.truth, motion, kTrialRate_hz, rows));
   const ExactRecord record = exact_record(c.structure, c.truth, motion, 0, kPaper_s);
-  estimator::PipelineConfig config{
-      c.structure, record.axes, {}, perturbed_design(table, c.truth, 0.1, 0.3, 1)};
-  config.options.rate_hz = kTrialRate_hz;
-  config.options.hop_s = kReproductionHop_s;
-  const auto windows = run_windows(config, record.accel_abs, 0, kReproductionHop_s);
+  const auto windows = run_windows(trial_config(c.structure, record, c.truth, 0.1, 0.3, 1),
+                                   record.accel_abs, 0, kTrialHop_s);
   if (!windows.empty())
     out.matched = Eigen::Map<const Eigen::VectorXd>(windows.back().solution.data(), table.size());
   return out;
@@ -98,16 +93,19 @@ void judge_coverage(const AccuracyRow& row, Method method, const std::string& su
   }
 }
 
+void judge_median(const std::string& name, const char* kind, const ErrorStatistics& errors,
+                  double limit, std::vector<Promise>& out) {
+  const double found = errors.quantile(0.5);
+  out.push_back({fmt::format("{}: median error of {} at most {}", name, kind, percent(limit)),
+                 percent(found), found <= limit});
+}
+
 void judge_row(const AccuracyRow& row, std::vector<Promise>& out) {
   for (const AccuracyCase& c : accuracy_cases()) {
     if (c.name != row.name) continue;
-    for (int kind = 0; kind < 3; ++kind) {
-      const double limit = c.limit[static_cast<std::size_t>(kind)];
-      const double found = row.of(Method::matched, kind).quantile(0.5);
-      out.push_back({fmt::format("{}: median error of {} at most {}", row.name, kJudgedKinds[kind],
-                                 percent(limit)),
-                     percent(found), found <= limit});
-    }
+    for (int kind = 0; kind < 3; ++kind)
+      judge_median(row.name, kJudgedKinds[kind], row.of(Method::matched, kind),
+                   c.limit[static_cast<std::size_t>(kind)], out);
     if (c.bound_limited) {
       const double ratio = row.of(Method::matched, 0).quantile(0.5) / row.least_median(0);
       out.push_back({fmt::format("{}: k within {} times the bound", row.name, kMaxOverBound),
@@ -136,11 +134,8 @@ void judge(const Robustness& r, std::vector<Promise>& out) {
 
 void judge(const FewSensorsRow& row, std::vector<Promise>& out) {
   if (!(row.most_k > 0)) return;
-  const double k = row.errors.stiffness.quantile(0.5), c = row.errors.damping.quantile(0.5);
-  out.push_back({fmt::format("{}: median error of k at most {}", row.name, percent(row.most_k)),
-                 percent(k), k <= row.most_k});
-  out.push_back({fmt::format("{}: median error of c at most {}", row.name, percent(row.most_c)),
-                 percent(c), c <= row.most_c});
+  judge_median(row.name, "k", row.errors.stiffness, row.most_k, out);
+  judge_median(row.name, "c", row.errors.damping, row.most_c, out);
 }
 
 void judge_wrong_model(const FewSensorsRow& row, std::vector<Promise>& out) {

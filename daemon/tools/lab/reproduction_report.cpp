@@ -35,10 +35,9 @@ std::string introduction(const Reproduction& all, const std::string& only) {
       "framewatch, on the same motions.</p>\n";
   out += command_html(only, all.seeds);
   out += fmt::format(
-      "<p>framewatch {}. Seeds 1 to {}: each is one artificial ground motion "
-      "(Kanai-Tajimi, 15 s, 45°), one draw of sensor noise, one wrong design. Motion "
-      "is the exact response (first-order hold at 1 ms, band-limited, decimated to "
-      "100 Hz), not the estimator's own scheme.</p>\n",
+      "<p>framewatch {}. Seeds 1 to {}: each is one artificial ground motion (Kanai-Tajimi, 15 s, "
+      "45°), one draw of sensor noise, one wrong design. Motion is the exact response (first-order "
+      "hold at 1 ms, band-limited, decimated to 100 Hz), not the estimator's own scheme.</p>\n",
       FRAMEWATCH_VERSION, all.seeds);
   out += fmt::format("<p>Ground motion of Figures 3 and 5: {}; of Figures 6 and 7: {}.{}</p>\n",
                      html_text(all.hachinohe), html_text(all.el_centro),
@@ -51,14 +50,11 @@ std::string introduction(const Reproduction& all, const std::string& only) {
          "accelerometers and the same five seconds (in tables of medians: 0.6745 times the bound's "
          "standard deviation, the median of a normal error; in tables of parameters: the standard "
          "deviation). <b>Refined</b>: framewatch refine, maximum likelihood, on the first window "
-         "of "
-         "each motion. <b>Paper, from accel.</b>: the paper's equations "
-         "on accelerations integrated behind a 0.1-Hz high-pass, 5 s. <b>Paper's example</b>: as "
-         "in the "
-         "paper, 10 s, independent noise on given accelerations, velocities and displacements. "
+         "of each motion. <b>Paper, from accel.</b>: the paper's equations on accelerations "
+         "integrated behind a 0.1-Hz high-pass, 5 s. <b>Paper's example</b>: as in the paper, 10 "
+         "s, independent noise on given accelerations, velocities and displacements. "
          "<b>Denoised</b>: behind its singular value decomposition. Errors are relative, their "
-         "medians over parameters, windows and "
-         "motions.</p>\n";
+         "medians over parameters, windows and motions.</p>\n";
 }
 
 constexpr const char* kKinds[] = {"k", "G", "c"};
@@ -188,9 +184,7 @@ std::string with_noise(const Rows& rows) {
           kind == 0 ? r->name : "",       kKinds[kind],
           percent(r->least_median(kind)), "**" + percent(ours) + "**",
           limit_text(r->name, kind),      fmt::format("{:.2f}", ours / r->least_median(kind))};
-      for (const Method method : {Method::matched_unaware, Method::refined, Method::paper_accel,
-                                  Method::paper_example, Method::paper_denoised})
-        cells.push_back(percent(r->of(method, kind).quantile(0.5)));
+      add_other_medians(*r, kind, cells);
       out += row(cells);
     }
   return out;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/lab/reproduction_sections.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,6 +8,7 @@
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/numbers.h"
+#include "daemon/monitor/estimates/estimate_table.h"
 #include "daemon/tools/lab/reproduction_plots.h"
 
 namespace framewatch::daemon {
@@ -18,6 +18,14 @@ namespace {
 std::vector<std::vector<std::string>> html_rows(std::vector<std::vector<std::string>> rows) {
   for (std::vector<std::string>& row : rows) row.front() = html_text(row.front());
   return rows;
+}
+
+/// Returns an identified parameter in thousands of its unit with its relative error:
+/// "3505 (+0.14 %)".
+std::string value_and_error(double value, double truth) {
+  if (!std::isfinite(value)) return "-";
+  return fmt::format("{:.5g} ({}{})", 1e-3 * value, value >= truth ? "+" : "",
+                     percent(value / truth - 1));
 }
 
 /// Returns mean, median and number of the windows that have a value.
@@ -42,24 +50,6 @@ std::string figure_of(const std::string& group) {
   return group == "table2c" ? "Figure 5" : "As Figure 5";
 }
 
-const char* reason_word(estimator::Observability reason) {
-  switch (reason) {
-    case estimator::Observability::observable:
-      return "";
-    case estimator::Observability::warming_up:
-      return "warming up";
-    case estimator::Observability::quiet:
-      return "quiet";
-    case estimator::Observability::floor_too_stiff:
-      return "floor too stiff";
-    case estimator::Observability::symmetric_plan:
-      return "plan symmetric";
-    case estimator::Observability::channel_lost:
-      return "channel lost";
-  }
-  return "";
-}
-
 std::string parameter_table(const BuildingReproduction& b) {
   const SeedResult& seed = b.rows.front().first_seed;
   std::vector<std::vector<std::string>> rows;
@@ -70,7 +60,8 @@ std::string parameter_table(const BuildingReproduction& b) {
     const bool shown = w.reason[i] == estimator::Observability::observable;
     rows.push_back({b.table[p].name, fmt::format("{:.5g}", 1e-3 * b.truth[p]),
                     value_and_error(seed.paper_example[p], b.truth[p]),
-                    shown ? value_and_error(w.value[i], b.truth[p]) : reason_word(w.reason[i]),
+                    shown ? value_and_error(w.value[i], b.truth[p])
+                          : reason_word(static_cast<int>(w.reason[i])),
                     shown ? percent(w.std_error[i] / b.truth[p]) : "",
                     percent(seed.first_bound[p] / b.truth[p])});
   }
@@ -85,6 +76,12 @@ double worst(const BuildingReproduction& b, const Eigen::VectorXd& theta) {
 
 }  // namespace
 
+void add_other_medians(const AccuracyRow& row, int kind, std::vector<std::string>& cells) {
+  for (const Method method : {Method::matched_unaware, Method::refined, Method::paper_accel,
+                              Method::paper_example, Method::paper_denoised})
+    cells.push_back(percent(row.of(method, kind).quantile(0.5)));
+}
+
 std::string command_html(const std::string& name, int seeds) {
   return fmt::format("<pre>framewatch reproduce{} --seeds {} --out DIR</pre>\n",
                      name.empty() ? "" : " --case " + name, seeds);
@@ -92,14 +89,12 @@ std::string command_html(const std::string& name, int seeds) {
 
 std::string noise_section(const Reproduction& all) {
   std::string out = "<h2>Influence of noise</h2>\n" + command_html("noise", all.seeds);
-  std::vector<std::string> plots = noise_influence(*all.noise, all.noise->paper, "paper", 1, true);
-  const auto ours = noise_influence(*all.noise, all.noise->matched, "framewatch", 0, true);
-  out +=
-      html_figure(plots, "<b>Figure 6</b>. Table 2(c), first 10 s of " + html_text(all.el_centro) +
-                             " at 45°, the paper's method: independent noise between 0.075 and 150 "
-                             "rad/s on accelerations, velocities and displacements, one line a "
-                             "parameter, mean over the seeds.");
-  out += html_figure(ours,
+  out += html_figure(noise_influence(*all.noise, all.noise->paper, "paper", 1, true),
+                     "<b>Figure 6</b>. Table 2(c), first 10 s of " + html_text(all.el_centro) +
+                         " at 45°, the paper's method: independent noise between 0.075 and 150 "
+                         "rad/s on accelerations, velocities and displacements, one line a "
+                         "parameter, mean over the seeds.");
+  out += html_figure(noise_influence(*all.noise, all.noise->matched, "framewatch", 0, true),
                      "By framewatch: white noise on the accelerometers, 5-s window that ends at 10 "
                      "s, before the gate decides what is published.");
   return out;
@@ -133,11 +128,10 @@ std::string robustness_section(const Robustness& r, int seeds) {
       rows.back().push_back(percent(sweep.wrong_ratio(kind)));
     }
   }
-  out +=
-      html_figure(plots,
-                  "The sensors' noise stays, the motion fades from left to right. The design is "
-                  "off by up to 20 % in k and 40 % in the rest. Dots: the share of all k that is "
-                  "published and wrong by more than 5 %.");
+  out += html_figure(plots,
+                     "The sensors' noise stays, the motion fades from left to right. The design is "
+                     "off by up to 20 % in k and 40 % in the rest. Dots: the share of all k that "
+                     "is published and wrong by more than 5 %.");
   out += html_table({"sweep", "k published", "of these off by > 5 %", "G published",
                      "off by > 25 %", "c published", "off by > 25 %"},
                     rows);
@@ -230,12 +224,6 @@ std::string few_sensors_section(const Reproduction& all) {
                     html_rows(wrong_model_rows(all.wrong_models)));
 }
 
-std::string value_and_error(double value, double truth) {
-  if (!std::isfinite(value)) return "-";
-  return fmt::format("{:.5g} ({}{})", 1e-3 * value, value >= truth ? "+" : "",
-                     percent(value / truth - 1));
-}
-
 std::string row_table(const std::vector<const AccuracyRow*>& rows) {
   std::vector<std::vector<std::string>> cells;
   for (const AccuracyRow* row : rows)
@@ -243,13 +231,10 @@ std::string row_table(const std::vector<const AccuracyRow*>& rows) {
       const ErrorStatistics& ours = row->of(Method::matched, kind);
       cells.push_back({kind == 0 ? html_text(row->name) : "", kSymbols[kind],
                        percent(row->least_median(kind)), percent(ours.quantile(0.5)),
-                       fmt::format("{:.2f}", ours.quantile(0.5) / row->least_median(kind)),
-                       percent(row->of(Method::matched_unaware, kind).quantile(0.5)),
-                       percent(row->of(Method::refined, kind).quantile(0.5)),
-                       percent(row->of(Method::paper_accel, kind).quantile(0.5)),
-                       percent(row->of(Method::paper_example, kind).quantile(0.5)),
-                       percent(row->of(Method::paper_denoised, kind).quantile(0.5)),
-                       percent(ours.published_ratio()), percent_1(ours.coverage_ratio())});
+                       fmt::format("{:.2f}", ours.quantile(0.5) / row->least_median(kind))});
+      add_other_medians(*row, kind, cells.back());
+      cells.back().push_back(percent(ours.published_ratio()));
+      cells.back().push_back(percent_1(ours.coverage_ratio()));
     }
   return html_table({"case", "", "least possible", "framewatch", "ratio", "noise not configured",
                      "refined", "paper, from accel.", "paper's example", "denoised", "published",

@@ -12,9 +12,8 @@ namespace framewatch::daemon {
 std::string command_html(const std::string& name, int seeds);
 /// Returns rows of the accuracy table with every method.
 std::string row_table(const std::vector<const AccuracyRow*>& rows);
-/// Returns an identified parameter in thousands of its unit with its relative error:
-/// "3505 (+0.14 %)".
-std::string value_and_error(double value, double truth);
+/// Adds the median errors of every method except `matched`.
+void add_other_medians(const AccuracyRow& row, int kind, std::vector<std::string>& cells);
 
 /// Return the rows of the tables of silence, few sensors and wrong models, as plain text.
 std::vector<std::vector<std::string>> silence_rows(const std::vector<Silence>& silences);

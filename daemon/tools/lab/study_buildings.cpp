@@ -49,6 +49,16 @@ std::vector<std::string> names(const char* axis, int frames) {
   return out;
 }
 
+estimator::SensorAxis axis_of(const std::string& name, int story, int frame,
+                              estimator::Direction direction) {
+  estimator::SensorAxis out;
+  out.name = name;
+  out.story = story;
+  out.frame = frame;
+  out.direction = direction;
+  return out;
+}
+
 }  // namespace
 
 estimator::Structure table1() {
@@ -99,24 +109,12 @@ Eigen::VectorXd table2_theta(char variant) {
 
 std::vector<estimator::SensorAxis> full_sensor_axes(const estimator::Structure& s) {
   std::vector<estimator::SensorAxis> axes;
-  for (int story = 1; story <= s.stories; ++story) {
-    for (int f = 0; f < s.frames(); ++f) {
-      estimator::SensorAxis axis;
-      axis.name = "F" + std::to_string(story) + "-" + s.frame_name(f);
-      axis.story = story;
-      axis.direction = s.direction(f);
-      axis.frame = f;
-      axes.push_back(axis);
-    }
-  }
-  const auto add_base = [&](const char* name, estimator::Direction direction) {
-    estimator::SensorAxis axis;
-    axis.name = name;
-    axis.direction = direction;
-    axes.push_back(axis);
-  };
-  if (s.n() > 0) add_base("F0-x", estimator::Direction::x);
-  if (s.m() > 0) add_base("F0-y", estimator::Direction::y);
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f)
+      axes.push_back(
+          axis_of(fmt::format("F{}-{}", story, s.frame_name(f)), story, f, s.direction(f)));
+  if (s.n() > 0) axes.push_back(axis_of("F0-x", 0, -1, estimator::Direction::x));
+  if (s.m() > 0) axes.push_back(axis_of("F0-y", 0, -1, estimator::Direction::y));
   return axes;
 }
 
@@ -173,26 +171,16 @@ std::vector<estimator::SensorAxis> floor_axes_in_space(const std::vector<int>& f
   levels.insert(levels.end(), floors.begin(), floors.end());
   std::vector<estimator::SensorAxis> axes;
   for (const int level : levels)
-    for (const int frame : {0, 2, 3}) {
-      estimator::SensorAxis axis;
-      axis.name = fmt::format("F{}-{}", level, frame);
-      axis.story = level;
-      axis.frame = frame;
-      axis.direction = frame == 0 ? estimator::Direction::x : estimator::Direction::y;
-      axes.push_back(axis);
-    }
+    for (const int frame : {0, 2, 3})
+      axes.push_back(axis_of(fmt::format("F{}-{}", level, frame), level, frame,
+                             frame == 0 ? estimator::Direction::x : estimator::Direction::y));
   return axes;
 }
 
 std::vector<estimator::SensorAxis> floor_axes(const std::vector<int>& floors) {
-  std::vector<estimator::SensorAxis> axes(1);
-  axes[0].name = "base";
-  for (const int floor : floors) {
-    axes.emplace_back();
-    axes.back().name = fmt::format("F{}", floor);
-    axes.back().story = floor;
-    axes.back().frame = 0;
-  }
+  std::vector<estimator::SensorAxis> axes{axis_of("base", 0, -1, estimator::Direction::x)};
+  for (const int floor : floors)
+    axes.push_back(axis_of(fmt::format("F{}", floor), floor, 0, estimator::Direction::x));
   return axes;
 }
 

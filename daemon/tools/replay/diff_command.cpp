@@ -249,8 +249,7 @@ void print_json(const Result& r, std::int64_t byte) {
     for (const auto& [field, span] : fields) {
       fmt::print(
           "{}\n  {{\"subject\": {}, \"field\": {}, \"count\": {},\n   \"first\": {},\n   "
-          "\"worst\": "
-          "{}}}",
+          "\"worst\": {}}}",
           comma, json_text(subject), json_text(field), span.count, json_of(span.first),
           json_of(span.worst));
       comma = ",";

@@ -86,10 +86,9 @@ class ExpectationReader {
                            static_cast<int>(e.tolerance.ratio.has_value()) +
                            static_cast<int>(e.tolerance.std_errors.has_value());
     if (tolerances > 1 || (numbers && tolerances == 0))
-      s.problem(
-          tolerances > 1 && e.tolerance.ratio ? "tolerance_ratio" : "tolerance",
-          "one of tolerance, tolerance_ratio, tolerance_std_errors must be given with median, "
-          "q1, q3 or value");
+      s.problem(tolerances > 1 && e.tolerance.ratio ? "tolerance_ratio" : "tolerance",
+                "one of tolerance, tolerance_ratio, tolerance_std_errors must be given with "
+                "median, q1, q3 or value");
     if (!numbers && !e.observable_ratio && !e.observable_min_ratio && !e.observable_max_ratio)
       s.problem("median", "expects nothing: give median, q1, q3, value or an observable ratio");
     out.parameters.push_back(std::move(e));
@@ -200,9 +199,8 @@ class Checker {
   }
 
   void parameter(const ParameterExpectation& e, const Series& series) {
-    const Range range = found_.series.range(
-        microseconds(e.span.from_s, found_.first_us),
-        e.span.to_s < 4e9 ? microseconds(e.span.to_s, found_.first_us) : INT64_MAX);
+    const Range range = found_.series.range(microseconds(e.span.from_s, found_.first_us),
+                                            microseconds(e.span.to_s, found_.first_us));
     const EstimateSeries::Quartiles q = found_.series.quartiles(series, range);
     if (e.median) quartile(e, series, range, "median", *e.median, q.median);
     if (e.q1) quartile(e, series, range, "q1", *e.q1, q.q1);

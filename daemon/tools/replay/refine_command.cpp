@@ -11,6 +11,7 @@
 #include "daemon/base/json.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
+#include "daemon/base/words.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/segment_collector.h"
@@ -101,10 +102,6 @@ std::string json(const RefineArguments& a, const Config& config,
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string value_text(double value) {
-  return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-";
-}
-
 std::string text(const estimator::ParameterTable& table, const Report& report) {
   const estimator::Refinement& r = report.refinement;
   std::string out =
@@ -120,8 +117,9 @@ std::string text(const estimator::ParameterTable& table, const Report& report) {
                      "refined", "std error", "least error", "unit");
   for (int p = 0; p < table.size(); ++p)
     out += fmt::format("{:<12} {:>12} {:>12} {:>12} {:>12}  {}\n", table[p].name,
-                       value_text(report.streaming[std::size_t(p)]), value_text(r.theta[p]),
-                       value_text(r.std_error[p]), value_text(r.bound[p]), table[p].unit);
+                       or_dash(report.streaming[std::size_t(p)], "{:.5g}"),
+                       or_dash(r.theta[p], "{:.5g}"), or_dash(r.std_error[p], "{:.5g}"),
+                       or_dash(r.bound[p], "{:.5g}"), table[p].unit);
   out +=
       "streaming: the last value published by the end of the stretch, or - without one; least "
       "error: Cramer-Rao bound\n";
@@ -137,10 +135,7 @@ int refine(const RefineArguments& a) {
   if (!config) return kBadInput;
   const estimator::PipelineConfig& pipeline_config = config->pipeline;
   const double to_s = a.to_s < 0 ? a.from_s + pipeline_config.options.window_s : a.to_s;
-  if (!(to_s > a.from_s)) {
-    fmt::print(stderr, "framewatch refine: --to must be later than --from\n");
-    return kBadInput;
-  }
+  if (!(to_s > a.from_s)) return refuse("refine", "--to must be later than --from");
   ReplaySurvey survey(*config, false);
   survey.declare(a.record);
   for (const std::string& path : a.inputs) survey.add(path);
@@ -186,10 +181,7 @@ int refine(const RefineArguments& a) {
   const RefinedSegment segment = without_silent_channels(pipeline_config, collector);
   const estimator::ParameterTable table = segment.config.parameters();
   const Eigen::VectorXd design = design_of(segment.config);
-  Report report;
-  report.from_s = a.from_s;
-  report.to_s = to_s;
-  report.silent = segment.silent;
+  Report report{a.from_s, to_s, {}, {}, segment.silent};
   Eigen::VectorXd start = design;
   for (int p = 0; p < table.size(); ++p) {
     const std::optional<int> same = streamed.find(table[p].name);

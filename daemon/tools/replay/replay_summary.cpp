@@ -154,10 +154,9 @@ std::string ReplaySummary::text() const {
 }
 
 std::string ReplaySummary::json() const {
-  std::string out = fmt::format(
-      "{{\"schema\": \"framewatch.replay/1\", \"motion_s\": {}, "
-      "\"work_s\": {}, ",
-      json_number(survey.measured_seconds()), json_number(work_s));
+  std::string out =
+      fmt::format("{{\"schema\": \"framewatch.replay/1\", \"motion_s\": {}, \"work_s\": {}, ",
+                  json_number(survey.measured_seconds()), json_number(work_s));
   for (const auto& [name, value] : counts) out += fmt::format("\"{}\": {}, ", name, value);
   out += fmt::format("\"damaged_bytes\": {},\n \"notes\": [", survey.damaged_bytes());
   for (std::size_t i = 0; i < survey.notes().size(); ++i)

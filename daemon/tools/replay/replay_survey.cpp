@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/numbers.h"
+#include "daemon/base/words.h"
 #include "daemon/config/channel_addresses.h"
 #include "daemon/config/header_differences.h"
 #include "drivers/can/can_log.h"
@@ -45,12 +46,6 @@ std::string list(const std::map<std::string, std::int64_t>& channels) {
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, count);
   }
   return text;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
 }
 
 }  // namespace
@@ -122,10 +117,10 @@ void ReplaySurvey::add_record(ReplayInput input) {
   }
   if (others.size() == record.names.size())
     problems_.push_back(fmt::format("{}: no column is named like a channel of {}; it has {}",
-                                    input.path, config_.path, joined(others)));
+                                    input.path, config_.path, listed(others)));
   else if (!others.empty())
     notes_.push_back(
-        fmt::format("{}: ignored columns without a channel: {}", input.path, joined(others)));
+        fmt::format("{}: ignored columns without a channel: {}", input.path, listed(others)));
   for (const std::string& difference : header_differences(config_, record))
     notes_.push_back(fmt::format("{}: {}", input.path, difference));
   check_rate(input.path, record.rate_hz);
@@ -337,7 +332,7 @@ void ReplaySurvey::finish() {
   if (!only_logs || !problems_.empty()) return;
   if (declared_)
     problems_.push_back("--unit, --step and the like are for record files: a log contains them");
-  const std::string names = joined(any_raw_ ? counts_.missing() : intake().binding().unbound());
+  const std::string names = listed(any_raw_ ? counts_.missing() : intake().binding().unbound());
   if (!names.empty())
     notes_.push_back(
         fmt::format("channels of {} that no message carries: {}", config_.path, names));
@@ -444,8 +439,8 @@ void ReplaySurvey::judge_raw_log(const std::string& path, const LogSeen& seen) {
   }
   if (seen.samples == 0 && seen.malformed_counts == 0 && !seen.left_out)
     problems_.push_back(fmt::format("{}: no channel is named like one of {}; it has {}", path,
-                                    config_.path, joined(counts_.unknown())));
-  else if (std::exchange(ignored_, joined(counts_.unknown())) != ignored_ && !ignored_.empty())
+                                    config_.path, listed(counts_.unknown())));
+  else if (std::exchange(ignored_, listed(counts_.unknown())) != ignored_ && !ignored_.empty())
     notes_.push_back(fmt::format("{}: ignored channels that {} does not have: {}", path,
                                  config_.path, ignored_));
   if (seen.samples > 0) extend(path, log_first_us_, log_last_us_);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "daemon/config/config.h"
@@ -33,14 +32,13 @@ struct SessionFloors {
   std::vector<estimator::LeftOutFloor> left_out;
 };
 
-/// Returns the first row and the row after the last between which the highest measured floor has 5
-/// to 95 % of its Arias intensity.
-std::pair<Eigen::Index, Eigen::Index> strong_rows(const SessionMotion& motion);
-
 /// Computes the motion of every floor. config: of groups of stories. Takes memory and time like a
 /// replay of the motion.
 SessionFloors session_floors(const Config& config, const SessionMotion& motion,
                              const SessionEstimates& estimates);
+
+/// Returns the directions that have frames, in order (0: x, 1: y).
+std::vector<int> framed_directions(const estimator::Structure& structure);
 
 /// Returns the largest drift over height of a story's frames along a direction (0: x); NaN when
 /// unknown.

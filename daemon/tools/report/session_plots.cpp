@@ -7,6 +7,7 @@
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
+#include "daemon/base/words.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/tools/report/session_report.h"
 #include "estimator/numeric/nan.h"
@@ -17,12 +18,6 @@ namespace {
 
 constexpr std::size_t kMaxHistories = 48, kMaxLoops = 32;
 constexpr Eigen::Index kMaxLoopPoints = 1000;
-
-std::vector<double> window_times(const SessionReport& r) {
-  std::vector<double> out;
-  for (const std::int64_t end : r.estimates.end_us) out.push_back(session_seconds(r, end));
-  return out;
-}
 
 std::string motion_plot(const SessionReport& r, bool base) {
   const SessionMotion& m = *r.motion;
@@ -122,45 +117,33 @@ int width(std::size_t shown) {
   return shown <= 3 ? 300 : shown <= 8 ? 485 : 980;
 }
 
-struct MeanGroup {
-  std::string name;
-  int color;
-  std::vector<double> value, error;
-};
-
 /// Plots the left part of Figure 10: means next to the references.
 std::string means(const SessionReport& r, int kind, const std::vector<std::size_t>& shown) {
   const auto [per_unit, unit] = paper_unit(kind);
   const double factor = per_unit;
-  std::vector<MeanGroup> groups;
+  std::vector<SvgSeries> groups;
   const auto reference = [&](const char* name, int color, const std::vector<double>& values) {
-    MeanGroup group{name, color, {}, {}};
-    bool any = false;
-    for (const std::size_t p : shown) {
-      group.value.push_back(factor * values[p]);
-      any = any || std::isfinite(values[p]);
-    }
-    if (any) groups.push_back(std::move(group));
+    SvgSeries group{name, color, SvgMark::bars, {}, {}};
+    for (const std::size_t p : shown) group.y.push_back(factor * values[p]);
+    if (std::any_of(group.y.begin(), group.y.end(), [](double v) { return std::isfinite(v); }))
+      groups.push_back(std::move(group));
   };
   reference("reference-dynamic", 4, r.reference_dynamic);
   reference(r.reference_from_drawings ? "reference-static" : "start value", 6, r.reference_static);
   for (std::size_t s = 0; s < r.compared.size(); ++s) {
-    MeanGroup group{r.compared[s].name, static_cast<int>(s), {}, {}};
+    groups.push_back({r.compared[s].name, static_cast<int>(s), SvgMark::bars, {}, {}});
     for (const std::size_t p : shown) {
       const ParameterSummary one = summarise(r.estimates, p, r.compared[s].boxes);
-      group.value.push_back(factor * one.mean);
-      group.error.push_back(factor * one.std_error);
+      groups.back().y.push_back(factor * one.mean);
+      groups.back().error.push_back(factor * one.std_error);
     }
-    groups.push_back(std::move(group));
   }
   SvgPlot plot(std::string("means: ") + kKindName[kind], names(r, shown),
                {std::string(kKindName[kind]) + ", " + unit, 0}, width(shown.size()), 300);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    std::vector<double> x;
     for (std::size_t i = 0; i < shown.size(); ++i)
-      x.push_back(static_cast<double>(i + 1) + offset(g, groups.size()));
-    plot.add(SvgSeries{groups[g].name, groups[g].color, SvgMark::bars, x, groups[g].value,
-                       groups[g].error});
+      groups[g].x.push_back(static_cast<double>(i + 1) + offset(g, groups.size()));
+    plot.add(groups[g]);
   }
   return plot.svg();
 }
@@ -203,16 +186,11 @@ std::string boxes(const SessionReport& r, int kind, const std::vector<std::size_
   return plot.svg();
 }
 
-std::string in_percent(double ratio) {
-  return std::isfinite(ratio) ? fmt::format("{:.1f}", 100 * ratio) : "-";
-}
-
 /// Plots peak accelerations or drifts over the building's height, with measured floors marked.
 std::string over_height(const SessionFloors& floors, const estimator::Structure& s,
                         const char* title, const char* unit, bool drift) {
   SvgPlot plot(title, {unit, 0}, {"floor", 0, s.stories + 0.5}, 485, 480);
-  for (const int along : {0, 1}) {
-    if ((along == 0 ? s.n() : s.m()) == 0) continue;
+  for (const int along : framed_directions(s)) {
     SvgSeries line{along == 0 ? "along x" : "along y", along, SvgMark::line, {}, {}};
     SvgSeries dots{"", along, SvgMark::dots, {}, {}};
     for (int floor = drift ? 1 : 0; floor <= s.stories; ++floor) {
@@ -233,10 +211,11 @@ std::string over_height(const SessionFloors& floors, const estimator::Structure&
 
 std::string left_out_table(const SessionFloors& floors) {
   std::vector<std::vector<std::string>> rows;
-  for (const estimator::LeftOutFloor& one : floors.left_out)
-    rows.push_back({fmt::format("floor {}, {}", one.floor, letter(one.direction)),
-                    in_percent(one.low_error), in_percent(one.error), in_percent(one.low_spline),
-                    in_percent(one.spline)});
+  for (const estimator::LeftOutFloor& one : floors.left_out) {
+    rows.push_back({fmt::format("floor {}, {}", one.floor, letter(one.direction))});
+    for (const double error : {one.low_error, one.error, one.low_spline, one.spline})
+      rows.back().push_back(or_dash(100 * error, "{:.1f}"));
+  }
   return html_table({"left out", "error below 5 Hz, %", "error, %", "of a spline below 5 Hz, %",
                      "of a spline, %"},
                     rows);
@@ -252,82 +231,9 @@ std::string largest_error(const SessionFloors& floors) {
   if (!(most > 0)) return "";
   return fmt::format(
       " Predicted from the others, measured floors are off by {:.0f} to {:.0f} % below 5 Hz: "
-      "floors "
-      "without a channel are not better.",
+      "floors without a channel are not better.",
       100 * least, 100 * most);
 }
-
-}  // namespace
-
-std::string histories_section(const SessionReport& r) {
-  std::string out = "<h2>Histories</h2>\n";
-  if (r.motion && r.config)
-    out += html_figure({motion_plot(r, true), motion_plot(r, false)},
-                       "Measured acceleration, absolute.");
-  out += stages_section(r);
-  const std::vector<double> t = window_times(r);
-  for (const bool stiffness : {true, false}) {
-    std::vector<std::string> plots;
-    std::size_t left_out = 0;
-    for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
-      const int kind = r.estimates.table.kind[p];
-      if (is_stiffness_kind(kind) != stiffness) continue;
-      if (plots.size() < kMaxHistories)
-        plots.push_back(history(r, p, t));
-      else
-        ++left_out;
-    }
-    if (plots.empty()) continue;
-    out += html_figure(
-        plots, fmt::format(
-                   "{}, at the end of each window; pale: one standard error to either side; "
-                   "dotted: {}. The line breaks where nothing is published. The axes leave out one "
-                   "in a hundred windows at either end.{}",
-                   stiffness ? "Stiffness" : "Damping",
-                   r.reference_from_drawings ? "reference-static" : "start value",
-                   left_out > 0 ? fmt::format(" {} more parameters are in the log.", left_out)
-                                : std::string()));
-  }
-  SvgPlot residual("", {"time, s"}, {"residual / response"}, 980, 150);
-  residual.add(SvgSeries{"", 6, SvgMark::thin_line, t, r.estimates.residual_ratio});
-  return out + html_figure({residual.svg()},
-                           "Part of the response that the model does not explain, rms over rms.");
-}
-
-std::string transfer_section(const SessionReport& r) {
-  const bool changed = !r.transfer_after.empty();
-  std::vector<std::string> plots;
-  std::vector<std::vector<std::string>> rows;
-  const auto add = [&](const std::vector<TransferFunction>& transfer, const char* when) {
-    for (const TransferFunction& t : transfer) {
-      plots.push_back(quotient_plots(t));
-      const auto number = [](double f, int digits) {
-        return std::isfinite(f) ? fmt::format("{:.{}f}", f, digits) : "-";
-      };
-      rows.push_back({std::string(letter(t.direction)) + when, number(t.measured_mode_hz, 3),
-                      number(t.model_mode_hz, 3), number(t.mac, 2), number(t.stiffness_ratio(), 3),
-                      fmt::format("{}", t.segments)});
-    }
-  };
-  add(r.transfer, changed ? ", before the change" : "");
-  add(r.transfer_after, ", after the change");
-  if (rows.empty()) return "";
-  return "<h2>Transfer functions</h2>\n" +
-         html_figure(
-             plots,
-             "Mean of the top floor's frames over the base, from the longest forced stage. "
-             "The model has the reference-static values and moves with the measured base.") +
-         html_table({"direction", "measured mode, Hz", "model's mode, Hz", "likeness (MAC)",
-                     "reference-dynamic / reference-static", "segments"},
-                    rows) +
-         "<p>The model's lowest mode along the direction is paired with the measured peak of the "
-         "most similar shape. A MAC of 1 means equal shapes; modes with a MAC below 0.8 are not "
-         "paired. Reference-dynamic "
-         "stiffness is reference-static stiffness times the square of the ratio of the two "
-         "frequencies, for the frames of that direction.</p>\n";
-}
-
-namespace {
 
 /// Adds the loop and the identified stiffness of one stage to a plot.
 void add_loop(const SessionReport& r, const FrameLoop& loop, std::size_t stage, int color,
@@ -367,6 +273,72 @@ std::string loop_table(const SessionReport& r, const StageLoops& of) {
 
 }  // namespace
 
+std::string histories_section(const SessionReport& r) {
+  std::string out = "<h2>Histories</h2>\n";
+  if (r.motion && r.config)
+    out += html_figure({motion_plot(r, true), motion_plot(r, false)},
+                       "Measured acceleration, absolute.");
+  out += stages_section(r);
+  std::vector<double> t;
+  for (const std::int64_t end : r.estimates.end_us) t.push_back(session_seconds(r, end));
+  for (const bool stiffness : {true, false}) {
+    std::vector<std::string> plots;
+    std::size_t left_out = 0;
+    for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
+      const int kind = r.estimates.table.kind[p];
+      if (is_stiffness_kind(kind) != stiffness) continue;
+      if (plots.size() < kMaxHistories)
+        plots.push_back(history(r, p, t));
+      else
+        ++left_out;
+    }
+    if (plots.empty()) continue;
+    out += html_figure(
+        plots, fmt::format(
+                   "{}, at the end of each window; pale: one standard error to either side; "
+                   "dotted: {}. The line breaks where nothing is published. The axes leave out one "
+                   "in a hundred windows at either end.{}",
+                   stiffness ? "Stiffness" : "Damping",
+                   r.reference_from_drawings ? "reference-static" : "start value",
+                   left_out > 0 ? fmt::format(" {} more parameters are in the log.", left_out)
+                                : std::string()));
+  }
+  SvgPlot residual("", {"time, s"}, {"residual / response"}, 980, 150);
+  residual.add(SvgSeries{"", 6, SvgMark::thin_line, t, r.estimates.residual_ratio});
+  return out + html_figure({residual.svg()},
+                           "Part of the response that the model does not explain, rms over rms.");
+}
+
+std::string transfer_section(const SessionReport& r) {
+  const bool changed = !r.transfer_after.empty();
+  std::vector<std::string> plots;
+  std::vector<std::vector<std::string>> rows;
+  const auto add = [&](const std::vector<TransferFunction>& transfer, const char* when) {
+    for (const TransferFunction& t : transfer) {
+      plots.push_back(quotient_plots(t));
+      rows.push_back({std::string(letter(t.direction)) + when,
+                      or_dash(t.measured_mode_hz, "{:.3f}"), or_dash(t.model_mode_hz, "{:.3f}"),
+                      or_dash(t.mac, "{:.2f}"), or_dash(t.stiffness_ratio(), "{:.3f}"),
+                      fmt::format("{}", t.segments)});
+    }
+  };
+  add(r.transfer, changed ? ", before the change" : "");
+  add(r.transfer_after, ", after the change");
+  if (rows.empty()) return "";
+  return "<h2>Transfer functions</h2>\n" +
+         html_figure(
+             plots,
+             "Mean of the top floor's frames over the base, from the longest forced stage. "
+             "The model has the reference-static values and moves with the measured base.") +
+         html_table({"direction", "measured mode, Hz", "model's mode, Hz", "likeness (MAC)",
+                     "reference-dynamic / reference-static", "segments"},
+                    rows) +
+         "<p>The model's lowest mode along the direction is paired with the measured peak of the "
+         "most similar shape. A MAC of 1 means equal shapes; modes with a MAC below 0.8 are not "
+         "paired. Reference-dynamic stiffness is reference-static stiffness times the square of "
+         "the ratio of the two frequencies, for the frames of that direction.</p>\n";
+}
+
 std::string loops_section(const SessionReport& r) {
   if (r.loops.empty()) return "";
   std::string out = "<h2>Drift and restoring force</h2>\n", tables, spans;
@@ -396,9 +368,8 @@ std::string loops_section(const SessionReport& r) {
   return out +
          html_figure(
              plots,
-             fmt::format("The strongest motion ({}): restoring force with damping "
-                         "over story drift, above {:g} Hz; dashed: the identified "
-                         "stiffness (median).{}",
+             fmt::format("The strongest motion ({}): restoring force with damping over story "
+                         "drift, above {:g} Hz; dashed: the identified stiffness (median).{}",
                          spans, r.config->pipeline.options.high_pass_hz,
                          frames.size() > kMaxLoops ? " Only the first frames are shown." : "")) +
          tables;
@@ -414,8 +385,7 @@ std::string figure_10_section(const SessionReport& r) {
           all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), from + kMaxPerPlot)));
       std::string caption = fmt::format(
           "{}: on the left the means, with whiskers of one standard error of a window; on the "
-          "right "
-          "a boxplot per parameter (median, quartiles, adjacent values, outliers as +), of ",
+          "right a boxplot per parameter (median, quartiles, adjacent values, outliers as +), of ",
           kKindName[kind]);
       for (std::size_t s = 0; s < r.compared.size(); ++s)
         caption += fmt::format(
@@ -439,27 +409,21 @@ std::string floors_section(const SessionReport& r) {
                               "measured floors above and below with the identified stiffnesses.{}",
                               largest_error(floors)));
   std::vector<std::vector<std::string>> rows;
-  const auto cells = [](double value, const char* format) {
-    return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
-  };
   for (int floor = s.stories; floor >= 0; --floor) {
     std::vector<std::string> row{floor > 0 ? fmt::format("floor {}", floor) : "base"};
-    for (const int along : {0, 1}) {
-      if ((along == 0 ? s.n() : s.m()) == 0) continue;
+    for (const int along : framed_directions(s)) {
       const auto at = static_cast<std::size_t>(floor), d = static_cast<std::size_t>(along);
       row.push_back(floors.measured[at][d] ? "measured" : "computed");
-      row.push_back(cells(floors.peak_accel_mps2[at][d], "{:.3f}"));
-      row.push_back(floor > 0 ? cells(100 * peak_drift_ratio(floors, s, floor, along), "{:.4f}")
+      row.push_back(or_dash(floors.peak_accel_mps2[at][d], "{:.3f}"));
+      row.push_back(floor > 0 ? or_dash(100 * peak_drift_ratio(floors, s, floor, along), "{:.4f}")
                               : "-");
     }
     rows.push_back(std::move(row));
   }
   std::vector<std::string> head{""};
-  for (const char* along : {"x", "y"}) {
-    if ((*along == 'x' ? s.n() : s.m()) == 0) continue;
+  for (const int along : framed_directions(s))
     for (const char* what : {"", " acceleration, m/s^2", " drift of the story below, %"})
-      head.push_back(along + std::string(what));
-  }
+      head.push_back((along == 0 ? "x" : "y") + std::string(what));
   out += html_table(head, rows);
   if (floors.left_out.empty()) return out;
   return out + "<h3>Measured floors left out in turn</h3>\n" + left_out_table(floors) +
@@ -467,8 +431,7 @@ std::string floors_section(const SessionReport& r) {
              "<p>Each floor is predicted from all others with the stiffnesses identified in the "
              "strong motion ({:.1f} s to {:.1f} s, 5 to 95 % of the Arias intensity at the top). "
              "Errors are rms of the error over rms of the motion. The spline goes through the "
-             "other "
-             "floors; next to a channel one story away it may do as well.</p>\n",
+             "other floors; next to a channel one story away it may do as well.</p>\n",
              session_seconds(r, floors.from_us), session_seconds(r, floors.to_us));
 }
 

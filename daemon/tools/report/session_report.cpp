@@ -9,6 +9,7 @@
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/utc_time.h"
+#include "daemon/base/words.h"
 #include "daemon/monitor/estimates/estimate_table.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "estimator/numeric/nan.h"
@@ -65,7 +66,7 @@ std::string provenance(const SessionReport& r) {
         "made with.</strong></p>\n";
   std::vector<std::string> notes = r.estimates.notes;
   if (r.motion) notes.insert(notes.end(), r.motion->notes.begin(), r.motion->notes.end());
-  for (const std::string& note : notes) out += "<p>" + html_text(note) + "</p>\n";
+  for (const std::string& note : notes) out += html_paragraph(note);
   if (!r.motion)
     out +=
         "<p>Stages, transfer functions, drifts and forces need the raw samples: "
@@ -122,10 +123,6 @@ void compare(SessionReport& r) {
               r.estimates.end_us.back());
 }
 
-bool bends(const estimator::PipelineConfig& c) {
-  return c.bending_nmprad.any();
-}
-
 /// Returns the design of the identified parameters, from the drawings; empty without drawings.
 Eigen::VectorXd drawn(const estimator::PipelineConfig& c) {
   const estimator::ParameterTable table = c.parameters();
@@ -148,14 +145,6 @@ void add_dynamic_references(SessionReport& r) {
   }
 }
 
-std::string number(double value, int digits = 4) {
-  return std::isfinite(value) ? fmt::format("{:#.{}g}", value, digits) : "-";
-}
-
-std::string ratio_percent(double ratio, const char* format = "{:.1f}") {
-  return std::isfinite(ratio) ? fmt::format(fmt::runtime(format), 100 * ratio) : "-";
-}
-
 /// Returns the most frequent reason why a parameter had no value: "quiet".
 std::string without(const SessionReport& r, std::size_t p, WindowRange windows) {
   std::array<std::size_t, kReasons> counts{};
@@ -169,7 +158,7 @@ std::string model_error(const ModelFitTold* fit, std::size_t p, double value) {
   static constexpr std::array kWords{"", "fits", "only changes mean something", "does not fit"};
   if (fit == nullptr || fit->word[p] < 1 || fit->word[p] > 3) return "-";
   const char* word = kWords[static_cast<std::size_t>(fit->word[p])];
-  return fit->word[p] == 3 ? word : number(fit->error[p] * value, 2) + ", " + word;
+  return fit->word[p] == 3 ? word : or_dash(fit->error[p] * value, "{:#.2g}") + ", " + word;
 }
 
 const char* polarity_word(int polarity) {
@@ -178,82 +167,6 @@ const char* polarity_word(int polarity) {
 
 std::string of_range(const ChannelResult& r) {
   return r.range > 0 ? fmt::format("{:.0f}", 100 * r.peak / r.range) : "";
-}
-
-}  // namespace
-
-std::string drifts_section(const SessionReport& r) {
-  return r.drifts ? drift_table_section(*r.drifts, *r.config) : "";
-}
-
-std::string session_report_html(const SessionReport& r) {
-  const std::string title = r.title.empty() ? "Session of " + r.estimates.table.structure : r.title;
-  return html_page(title, verdict_section(r) + (r.drifts ? placard_section(*r.drifts) : "") +
-                              "<h1>" + html_text(title) + "</h1>\n" + events_section(r) +
-                              session_section(r) + figure_10_section(r) + drifts_section(r) +
-                              floors_section(r) + loops_section(r) + transfer_section(r) +
-                              histories_section(r) + parameter_section(r) + check_section(r) +
-                              health_section(r) + provenance(r));
-}
-
-void evaluate(SessionReport& r) {
-  const std::size_t count = r.estimates.parameters();
-  r.reference_static = r.estimates.table.design;
-  const Eigen::VectorXd design = r.config ? drawn(r.config->pipeline) : Eigen::VectorXd();
-  if (design.size() == static_cast<Eigen::Index>(count)) {
-    r.reference_static.assign(design.begin(), design.end());
-    r.reference_from_drawings = true;
-  }
-  r.reference_static.resize(count, estimator::kNaN);
-  for (double& value : r.reference_static)
-    if (!(value > 0)) value = estimator::kNaN;
-  r.reference_dynamic.assign(count, estimator::kNaN);
-  r.changes = session_changes(r.estimates);
-  r.recoveries = take_recoveries(r.estimates, r.motion ? &*r.motion : nullptr, r.changes);
-  r.judged = judged_elements(r.estimates);
-  if (r.motion) r.stages = find_stages(*r.motion);
-  compare(r);
-  if (!r.motion || !r.config) return;
-
-  const SessionMotion& m = *r.motion;
-  const estimator::Structure& structure = r.config->pipeline.structure;
-  const bool grouped = r.config->pipeline.parameters().grouped();
-  // The model of transfer functions does not bend.
-  const Eigen::VectorXd reference =
-      bends(r.config->pipeline) ? Eigen::VectorXd() : r.config->pipeline.design;
-  for (std::size_t i = 0; i < r.compared.size(); ++i) {
-    const ReportStage& stage = r.compared[i];
-    if (stage.kind != StageKind::forced) continue;
-    const Eigen::Index from = m.row_at(stage.from_us), to = m.row_at(stage.to_us);
-    auto& transfer = stage.after ? r.transfer_after : r.transfer;
-    if (transfer.empty()) transfer = transfer_functions(structure, m, from, to, reference);
-    if (grouped) continue;
-    std::vector<double> identified;
-    for (std::size_t p = 0; p < count; ++p)
-      identified.push_back(summarise(r.estimates, p, stage.whole).boxplot.median);
-    r.loops.push_back({i, frame_loops(structure, m, as_vector(identified),
-                                      r.config->pipeline.options.high_pass_hz, kLoop_s, from, to)});
-  }
-  add_dynamic_references(r);
-  r.drifts = session_drifts(*r.config, m, r.estimates, r.changes);
-  if (grouped) r.floors = session_floors(*r.config, m, r.estimates);
-}
-
-double session_seconds(const SessionReport& r, std::int64_t time_us) {
-  const std::int64_t origin = r.motion ? r.motion->first_us : r.estimates.start_us.front();
-  return 1e-6 * static_cast<double>(time_us - origin);
-}
-
-bool is_stiffness_kind(int kind) {
-  const auto k = static_cast<estimator::ParameterKind>(kind);
-  return k == estimator::ParameterKind::frame_stiffness ||
-         k == estimator::ParameterKind::panel_stiffness ||
-         k == estimator::ParameterKind::bending_stiffness;
-}
-
-std::pair<double, std::string> paper_unit(int kind) {
-  constexpr const char* kUnits[] = {"kN/m", "kN/(rad*m)", "N*s/m", "N*s/(rad*m)", "kN*m/rad"};
-  return {is_stiffness_kind(kind) ? 1e-3 : 1.0, kUnits[std::clamp(kind, 0, 4)]};
 }
 
 std::string parameter_section(const SessionReport& r) {
@@ -271,13 +184,13 @@ std::string parameter_section(const SessionReport& r) {
       const ParameterSummary one = summarise(r.estimates, p, stage.whole);
       std::vector<std::string> row{html_text(r.estimates.table.name[p]), unit};
       for (const double value : {r.reference_static[p], r.reference_dynamic[p], one.mean})
-        row.push_back(number(factor * value));
-      row.push_back(number(factor * one.std_error, 2));
+        row.push_back(or_dash(factor * value, "{:#.4g}"));
+      row.push_back(or_dash(factor * one.std_error, "{:#.2g}"));
       row.push_back(model_error(fit, p, factor * one.mean));
       for (const double value : {one.boxplot.q1, one.boxplot.median, one.boxplot.q3})
-        row.push_back(number(factor * value));
-      row.push_back(ratio_percent(one.observable_ratio));
-      row.push_back(ratio_percent(one.boxplot.median / r.reference_static[p] - 1, "{:+.1f}"));
+        row.push_back(or_dash(factor * value, "{:#.4g}"));
+      row.push_back(or_dash(100 * one.observable_ratio, "{:.1f}"));
+      row.push_back(or_dash(100 * (one.boxplot.median / r.reference_static[p] - 1), "{:+.1f}"));
       row.push_back(without(r, p, stage.whole));
       rows.push_back(std::move(row));
     }
@@ -289,20 +202,6 @@ std::string parameter_section(const SessionReport& r) {
                rows);
   }
   return out;
-}
-
-std::string stages_section(const SessionReport& r) {
-  if (r.stages.empty()) return "";
-  std::vector<std::vector<std::string>> rows;
-  for (const Stage& s : r.stages) {
-    const WindowRange w = windows_within(r.estimates, s.from_us, s.to_us);
-    rows.push_back({stage_word(s.kind), fmt::format("{:.1f}", session_seconds(r, s.from_us)),
-                    fmt::format("{:.1f}", session_seconds(r, s.to_us)),
-                    fmt::format("{:.1f}", s.seconds()), fmt::format("{}", w.size())});
-  }
-  return "<h3>Stages</h3>\n" +
-         html_table({"stage", "from, s", "to, s", "length, s", "whole windows"}, rows) +
-         "<p>Forced: the base moves. Free: the base rests and the building still moves.</p>\n";
 }
 
 std::string health_section(const SessionReport& r) {
@@ -319,7 +218,7 @@ std::string health_section(const SessionReport& r) {
                       fmt::format("{}", s.lost[i]), fmt::format("{}", s.late[i]),
                       fmt::format("{}", s.repaired[i]), fmt::format("{}", s.rejected[i]),
                       fmt::format("{}", s.stuck[i]), fmt::format("{}", s.clipped[i]),
-                      number(1e6 * s.noise_mps2_per_rthz[i], 3)});
+                      or_dash(1e6 * s.noise_mps2_per_rthz[i], "{:#.3g}")});
     out += html_table({"channel", "received", "lost", "late", "repaired", "rejected", "stuck",
                        "clipped", "noise, um/s^2/sqrt(Hz)"},
                       rows);
@@ -358,6 +257,93 @@ std::string check_section(const SessionReport& r) {
                      "saturated", "polarity (tap test)", ""},
                     rows) +
          (before.empty() ? "<p>The channels were not checked before the test.</p>\n" : "");
+}
+
+}  // namespace
+
+std::string session_report_html(const SessionReport& r) {
+  const std::string title = r.title.empty() ? "Session of " + r.estimates.table.structure : r.title;
+  return html_page(title, verdict_section(r) + (r.drifts ? placard_section(*r.drifts) : "") +
+                              "<h1>" + html_text(title) + "</h1>\n" + events_section(r) +
+                              session_section(r) + figure_10_section(r) +
+                              (r.drifts ? drift_table_section(*r.drifts, *r.config) : "") +
+                              floors_section(r) + loops_section(r) + transfer_section(r) +
+                              histories_section(r) + parameter_section(r) + check_section(r) +
+                              health_section(r) + provenance(r));
+}
+
+void evaluate(SessionReport& r) {
+  const std::size_t count = r.estimates.parameters();
+  r.reference_static = r.estimates.table.design;
+  const Eigen::VectorXd design = r.config ? drawn(r.config->pipeline) : Eigen::VectorXd();
+  if (design.size() == static_cast<Eigen::Index>(count)) {
+    r.reference_static.assign(design.begin(), design.end());
+    r.reference_from_drawings = true;
+  }
+  r.reference_static.resize(count, estimator::kNaN);
+  for (double& value : r.reference_static)
+    if (!(value > 0)) value = estimator::kNaN;
+  r.reference_dynamic.assign(count, estimator::kNaN);
+  r.changes = session_changes(r.estimates);
+  r.recoveries = take_recoveries(r.estimates, r.motion ? &*r.motion : nullptr, r.changes);
+  r.judged = judged_elements(r.estimates);
+  if (r.motion) r.stages = find_stages(*r.motion);
+  compare(r);
+  if (!r.motion || !r.config) return;
+
+  const SessionMotion& m = *r.motion;
+  const estimator::Structure& structure = r.config->pipeline.structure;
+  const bool grouped = r.config->pipeline.parameters().grouped();
+  // The model of transfer functions does not bend.
+  const Eigen::VectorXd reference =
+      r.config->pipeline.bending_nmprad.any() ? Eigen::VectorXd() : r.config->pipeline.design;
+  for (std::size_t i = 0; i < r.compared.size(); ++i) {
+    const ReportStage& stage = r.compared[i];
+    if (stage.kind != StageKind::forced) continue;
+    const Eigen::Index from = m.row_at(stage.from_us), to = m.row_at(stage.to_us);
+    auto& transfer = stage.after ? r.transfer_after : r.transfer;
+    if (transfer.empty()) transfer = transfer_functions(structure, m, from, to, reference);
+    if (grouped) continue;
+    std::vector<double> identified;
+    for (std::size_t p = 0; p < count; ++p)
+      identified.push_back(summarise(r.estimates, p, stage.whole).boxplot.median);
+    r.loops.push_back({i, frame_loops(structure, m, as_vector(identified),
+                                      r.config->pipeline.options.high_pass_hz, kLoop_s, from, to)});
+  }
+  add_dynamic_references(r);
+  r.drifts = session_drifts(*r.config, m, r.estimates, r.changes);
+  if (grouped) r.floors = session_floors(*r.config, m, r.estimates);
+}
+
+double session_seconds(const SessionReport& r, std::int64_t time_us) {
+  const std::int64_t origin = r.motion ? r.motion->first_us : r.estimates.start_us.front();
+  return 1e-6 * static_cast<double>(time_us - origin);
+}
+
+bool is_stiffness_kind(int kind) {
+  const auto k = static_cast<estimator::ParameterKind>(kind);
+  return k == estimator::ParameterKind::frame_stiffness ||
+         k == estimator::ParameterKind::panel_stiffness ||
+         k == estimator::ParameterKind::bending_stiffness;
+}
+
+std::pair<double, std::string> paper_unit(int kind) {
+  constexpr const char* kUnits[] = {"kN/m", "kN/(rad*m)", "N*s/m", "N*s/(rad*m)", "kN*m/rad"};
+  return {is_stiffness_kind(kind) ? 1e-3 : 1.0, kUnits[std::clamp(kind, 0, 4)]};
+}
+
+std::string stages_section(const SessionReport& r) {
+  if (r.stages.empty()) return "";
+  std::vector<std::vector<std::string>> rows;
+  for (const Stage& s : r.stages) {
+    const WindowRange w = windows_within(r.estimates, s.from_us, s.to_us);
+    rows.push_back({stage_word(s.kind), fmt::format("{:.1f}", session_seconds(r, s.from_us)),
+                    fmt::format("{:.1f}", session_seconds(r, s.to_us)),
+                    fmt::format("{:.1f}", s.seconds()), fmt::format("{}", w.size())});
+  }
+  return "<h3>Stages</h3>\n" +
+         html_table({"stage", "from, s", "to, s", "length, s", "whole windows"}, rows) +
+         "<p>Forced: the base moves. Free: the base rests and the building still moves.</p>\n";
 }
 
 }  // namespace framewatch::daemon

@@ -80,15 +80,11 @@ std::string bending_sentence(const SessionReport& report);
 std::string verdict_section(const SessionReport& report);
 std::string events_section(const SessionReport& report);
 std::string figure_10_section(const SessionReport& report);
-std::string parameter_section(const SessionReport& report);
 std::string stages_section(const SessionReport& report);
 std::string histories_section(const SessionReport& report);
 std::string transfer_section(const SessionReport& report);
 std::string loops_section(const SessionReport& report);
-std::string drifts_section(const SessionReport& report);
 std::string floors_section(const SessionReport& report);
-std::string health_section(const SessionReport& report);
-std::string check_section(const SessionReport& report);
 
 /// Returns the seconds since the session's first window or sample.
 double session_seconds(const SessionReport& report, std::int64_t time_us);

@@ -10,6 +10,7 @@
 #include "daemon/base/numbers.h"
 #include "daemon/base/svg_plot.h"
 #include "daemon/base/utc_time.h"
+#include "daemon/base/words.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
@@ -21,12 +22,6 @@ namespace {
 
 constexpr std::size_t kMaxEvents = 100, kMaxNamed = 3, kMaxInChart = 40;
 constexpr double kRounding = 1e-9;
-
-std::string capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
-    text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
-}
 
 std::string since(const SessionReport& r, std::int64_t time_us) {
   const double s = session_seconds(r, time_us);
@@ -190,7 +185,7 @@ std::string change_history(const SessionReport& r, const ElementChange& c) {
                      {factor * c.before.value, factor * c.before.value}});
   plot.add(SvgSeries{
       "after", 1, SvgMark::line, {at, t.back()}, {factor * c.after.value, factor * c.after.value}});
-  return html_figure({plot.svg()}, html_text(capital(what(r, c)) + " " + since(r, c.since_us) +
+  return html_figure({plot.svg()}, html_text(with_capital(what(r, c)) + " " + since(r, c.since_us) +
                                              " (" + r.estimates.table.name[c.parameter] + ")."));
 }
 
@@ -212,10 +207,9 @@ std::string change_table(const SessionReport& r) {
                                      [](const ElementChange& c) { return c.announced; });
   return html_table({"element", "parameter", "unit", "before", "after", "change, %", "since, s"},
                     rows) +
-         (announced
-              ? "<p>The change is the announced one, against the baseline and at equal amplitude; "
-                "before and after are means of this session's windows.</p>\n"
-              : "");
+         (announced ? "<p>The change is the announced one, against the baseline and at equal "
+                      "amplitude; before and after are means of this session's windows.</p>\n"
+                    : "");
 }
 
 /// Returns the least loss of one story of a frame that would have shown in every judged frame.
@@ -254,7 +248,7 @@ std::string why_no_watch(const SessionReport& r) {
 std::string verdict_sentence(const SessionReport& r) {
   const std::vector<ElementChange> changes = largest_first(r.changes);
   if (const event_t* all = common_change(r.estimates); changes.empty() && all != nullptr)
-    return capital(common_change_sentence(all->value / 100, all->std_error / 100)) + ".";
+    return with_capital(common_change_sentence(all->value / 100, all->std_error / 100)) + ".";
   if (const event_t* open = open_alarm(r); changes.empty() && open != nullptr)
     return fmt::format("An alarm is open at the end: {}.", open->message);
   if (changes.empty() && r.judged.empty() && !r.recoveries.empty())
@@ -273,7 +267,7 @@ std::string verdict_sentence(const SessionReport& r) {
     out += (i == 0 ? "" : "; ") + what(r, changes[i]) + ", " + since(r, changes[i].since_us);
   if (changes.size() > kMaxNamed)
     out += fmt::format("; and {} more changes", changes.size() - kMaxNamed);
-  return capital(out) + ".";
+  return with_capital(out) + ".";
 }
 
 std::string bending_sentence(const SessionReport& r) {
@@ -309,13 +303,10 @@ std::string bending_sentence(const SessionReport& r) {
 
 std::string verdict_section(const SessionReport& r) {
   std::string out = "<p class=\"verdict\">" + html_text(verdict_sentence(r)) + "</p>\n";
-  if (!r.recoveries.empty()) out += "<p>" + html_text(recovery_sentence(r)) + "</p>\n";
-  if (const std::string bending = bending_sentence(r); !bending.empty())
-    out += "<p>" + html_text(bending) + "</p>\n";
-  if (const std::string why = why_no_watch(r); !why.empty() && r.estimates.watch)
-    out += "<p>" + html_text(why) + "</p>\n";
-  const std::string rest = others_sentence(r) + sensors_sentence(r);
-  if (!rest.empty()) out += "<p>" + html_text(rest) + "</p>\n";
+  if (!r.recoveries.empty()) out += html_paragraph(recovery_sentence(r));
+  out += html_paragraph(bending_sentence(r));
+  if (r.estimates.watch) out += html_paragraph(why_no_watch(r));
+  out += html_paragraph(others_sentence(r) + sensors_sentence(r));
   out += change_chart(r);
   const std::vector<ElementChange> changes = largest_first(r.changes);
   for (std::size_t i = 0; i < std::min(changes.size(), kMaxNamed); ++i)
@@ -337,7 +328,7 @@ std::string events_section(const SessionReport& r) {
       why = "No event was announced during the measurement.";
     else if (!r.changes.empty())
       why += " This report found the changes above afterward, from all windows of the session.";
-    return "<h2>Events</h2>\n<p>" + html_text(why) + "</p>\n";
+    return "<h2>Events</h2>\n" + html_paragraph(why);
   }
   return "<h2>Events</h2>\n<p>As they were announced during the measurement.</p>\n" +
          html_table({"time, s", "state", "severity", "place", "what"}, rows) +

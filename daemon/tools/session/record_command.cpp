@@ -253,14 +253,11 @@ class RecordCommand {
 
   void publish(std::int64_t now_us) {
     const session_status_t status = recorder_.status(now_us);
-    const bool changed = status.state != said_state_ || status.message != said_news_ ||
-                         status.answered != said_answer_ || status.report != said_report_;
+    const bool changed = status.state != said_.state || status.message != said_.message ||
+                         status.answered != said_.answered || status.report != said_.report;
     if (!changed && now_us < next_status_us_) return;
     if (changed && !a_.quiet) log_changes(status);
-    said_state_ = status.state;
-    said_news_ = status.message;
-    said_answer_ = status.answered;
-    said_report_ = status.report;
+    said_ = status;
     next_status_us_ = now_us + kStatus_us;
     drivers::encode_into(bytes_, status);
     lcm_.publish(config_.lcm.prefix + "SESSION", bytes_.data(),
@@ -268,15 +265,15 @@ class RecordCommand {
   }
 
   void log_changes(const session_status_t& s) const {
-    if (s.answered != said_answer_ && !s.refused.empty())
+    if (s.answered != said_.answered && !s.refused.empty())
       log(LogLevel::warning, "refused: " + s.refused);
-    if (s.state != said_state_ && s.state == static_cast<int>(RecorderState::armed))
+    if (s.state != said_.state && s.state == static_cast<int>(RecorderState::armed))
       log(LogLevel::info, fmt::format("armed: triggers {:g} m/s^2 from rest", s.trigger_mps2));
-    if (s.state != said_state_ && s.state == static_cast<int>(RecorderState::recording))
+    if (s.state != said_.state && s.state == static_cast<int>(RecorderState::recording))
       log(LogLevel::info, fmt::format("recording {}/{}{}", a_.out, s.session,
                                       s.length_s > 0 ? fmt::format(" for {:g} s", s.length_s)
                                                      : "; Ctrl-C or --send stop ends it"));
-    if (s.message != said_news_ && !s.message.empty()) log(LogLevel::info, s.message);
+    if (s.message != said_.message && !s.message.empty()) log(LogLevel::info, s.message);
   }
 
   const RecordArguments& a_;
@@ -294,9 +291,7 @@ class RecordCommand {
   std::deque<std::string> to_finish_;
   std::string finishing_;
   std::optional<ChildProcess> child_;
-  int said_state_ = 0;
-  std::string said_news_, said_report_;
-  std::int64_t said_answer_ = 0;
+  session_status_t said_{};  ///< the newest one that was published
   std::vector<std::uint8_t> bytes_;
 };
 
@@ -309,25 +304,15 @@ int record(const RecordArguments& a) {
   std::vector<ConfigProblem> config_problems;
   const auto config = load_config(a.config, config_problems);
   print_problems(config_problems);
-  bool good = config.has_value();
-  for (const std::string& p : problems(a.request)) {
-    (void)refuse("record", p);
-    good = false;
-  }
-  if (a.standby && (!a.send.empty() || a.tap_s > 0)) {
-    (void)refuse("record", "--standby waits for commands: remove --send and --tap-test");
-    good = false;
-  }
-  if (!a.send.empty() && !a.url.empty()) {
-    (void)refuse("record", "--send uses the recorder's socket, not LCM: remove --url");
-    good = false;
-  }
-  if (const std::string why = config && a.send.empty() ? nothing_to_hear(*config, a.by_name) : "";
-      !why.empty()) {
-    (void)refuse("record", why);
-    good = false;
-  }
-  if (!good) return kBadInput;
+  std::vector<std::string> wrong = problems(a.request);
+  if (a.standby && (!a.send.empty() || a.tap_s > 0))
+    wrong.push_back("--standby waits for commands: remove --send and --tap-test");
+  if (!a.send.empty() && !a.url.empty())
+    wrong.push_back("--send uses the recorder's socket, not LCM: remove --url");
+  if (config && a.send.empty()) wrong.push_back(nothing_to_hear(*config, a.by_name));
+  std::erase(wrong, "");
+  for (const std::string& why : wrong) (void)refuse("record", why);
+  if (!config || !wrong.empty()) return kBadInput;
   if (!a.send.empty()) return send_session_command(*config, a.send, a.request);
   std::string error;
   const auto lcm =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/session/session_export.h"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <utility>
@@ -24,6 +23,15 @@ constexpr std::array<const char*, 3> kStageNames = {"quiet", "forced", "free"};
 
 void take(const std::vector<drivers::Problem>& found, std::vector<std::string>& problems) {
   for (const drivers::Problem& p : found) problems.push_back(p.where + ": " + p.message);
+}
+
+/// Adds a file that was written to `files`, or the problem of one that was not to `problems`.
+void add(const std::string& file, const std::string& problem, std::vector<std::string>& files,
+         std::vector<std::string>& problems) {
+  if (problem.empty())
+    files.push_back(file);
+  else
+    problems.push_back(file + ": " + problem);
 }
 
 std::string write_csv(const std::string& path, const drivers::Record& record) {
@@ -65,16 +73,9 @@ void export_raw(const std::string& folder, bool csv, bool mat, std::vector<std::
     const auto record = drivers::read_accel_log(log, contents->accel[i], found);
     if (!record) break;
     const std::string name = i == 0 ? "raw" : "raw." + contents->accel[i];
-    const auto write = [&](bool wanted, const std::string& file, auto writer) {
-      if (!wanted) return;
-      const std::string problem = writer(folder + "/" + file, *record);
-      if (problem.empty())
-        files.push_back(file);
-      else
-        problems.push_back(file + ": " + problem);
-    };
-    write(csv, name + ".csv", write_csv);
-    write(mat, name + ".mat", write_mat);
+    const std::string path = folder + "/" + name;
+    if (csv) add(name + ".csv", write_csv(path + ".csv", *record), files, problems);
+    if (mat) add(name + ".mat", write_mat(path + ".mat", *record), files, problems);
   }
   take(found, problems);
 }
@@ -134,10 +135,7 @@ void export_stages(const std::string& folder, const std::vector<Stage>& stages,
       found);
   take(found, problems);
   for (std::size_t i = 0; i < logs.size(); ++i)
-    if (logs[i]->close())
-      files.push_back(names[i]);
-    else
-      problems.push_back(names[i] + ": " + logs[i]->error());
+    add(names[i], logs[i]->close() ? "" : logs[i]->error(), files, problems);
 }
 
 }  // namespace framewatch::daemon

@@ -37,22 +37,14 @@ class Finishing {
   /// Gives partial files of a crash their final names. Event logs lose their torn end.
   void recover() {
     for (const char* name : {kRawLog, kCanLog, kEstimatesLog}) {
-      const std::string path = a_.folder + "/" + name;
+      const std::string path = a_.folder + "/" + name, partial = path + ".partial";
+      if (!drivers::is_absent(path) || drivers::is_absent(partial)) continue;
+      const std::string repaired = path + ".repaired";
+      const bool whole = name == kCanLog || repair({partial, repaired}) == 0;
+      const bool copied = name != kCanLog && !drivers::is_absent(repaired);
       std::error_code error;
-      if (!drivers::is_absent(path) || drivers::is_absent(path + ".partial")) continue;
-      bool whole = true;
-      if (name != kCanLog) {
-        const std::string repaired = path + ".repaired";
-        whole = repair({path + ".partial", repaired}) == 0;
-        if (whole && !drivers::is_absent(repaired)) {
-          fs::rename(repaired, path, error);
-          if (!error) fs::remove(path + ".partial", error);
-        } else if (whole) {
-          fs::rename(path + ".partial", path, error);
-        }
-      } else {
-        fs::rename(path + ".partial", path, error);
-      }
+      if (whole) fs::rename(copied ? repaired : partial, path, error);
+      if (whole && copied && !error) fs::remove(partial, error);
       if (whole && !error) {
         session_.files.push_back(name);
         note(std::string(name) + ": the recording was cut off; its contents are intact");

@@ -102,6 +102,8 @@ void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& sin
                                       axis.name, kLongestDelay_s)});
 }
 
+/// Reads the true parameters of the virtual building in table order, SI, from [truth] or else the
+/// design (which may be empty). Missing damping is proportional to the stiffness.
 class TruthReader {
  public:
   TruthReader(const estimator::Structure& structure, const Eigen::VectorXd& design,
@@ -170,13 +172,6 @@ class TruthReader {
   Eigen::VectorXd theta_;
 };
 
-/// Returns the true parameters of the virtual building in table order, SI, from [truth] or else the
-/// design (which may be empty). Missing damping is proportional to the stiffness.
-Eigen::VectorXd read_truth(ConfigSection& section, const estimator::Structure& structure,
-                           const Eigen::VectorXd& design) {
-  return TruthReader(structure, design, section).read();
-}
-
 constexpr double kMaxChanged = 1e7;  // values; every change stores all parameters
 constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change", "effect"};
 
@@ -229,7 +224,7 @@ class ScenarioReader {
     ConfigSection truth("truth", "truth", section(parts_, "truth"), {1, 1}, problems_);
     if (building) {
       const estimator::PipelineConfig& p = s.config.pipeline;
-      s.truth = read_truth(truth, p.structure, p.design);
+      s.truth = TruthReader(p.structure, p.design, truth).read();
     }
     read_sensors(section(parts_, "sensors"), tables_of(parts_.sections, "sensor", problems_), s,
                  problems_);

@@ -2,6 +2,7 @@
 #include "daemon/tools/simulation/simulation_truth.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
@@ -13,80 +14,58 @@
 namespace framewatch::daemon {
 namespace {
 
+/// Kinds of estimator::PlaceKind, in its order. A channel of the base is of kind "base".
+constexpr std::array kKinds = {"frame",    "panel",       "node", "node",    "node",   "floor",
+                               "building", "whole_frame", "mode", "channel", "channel"};
+static_assert(kKinds.size() == static_cast<std::size_t>(estimator::PlaceKind::channel_pair) + 1);
+
 const char* kind_text(const estimator::EffectPlace& p,
                       const std::vector<estimator::SensorAxis>& axes) {
-  switch (p.kind) {
-    case estimator::PlaceKind::frame:
-      return "frame";
-    case estimator::PlaceKind::panel:
-      return "panel";
-    case estimator::PlaceKind::node:
-    case estimator::PlaceKind::node_pair:
-    case estimator::PlaceKind::crossing:
-      return "node";
-    case estimator::PlaceKind::floor:
-      return "floor";
-    case estimator::PlaceKind::building:
-      return "building";
-    case estimator::PlaceKind::whole_frame:
-      return "whole_frame";
-    case estimator::PlaceKind::mode:
-      return "mode";
-    case estimator::PlaceKind::channel:
-    case estimator::PlaceKind::channel_pair:
-      return axes[static_cast<std::size_t>(p.channel)].story > 0 ? "channel" : "base";
-  }
-  return "";
+  const bool base = p.channel >= 0 && axes[static_cast<std::size_t>(p.channel)].story <= 0;
+  return base ? "base" : kKinds[static_cast<std::size_t>(p.kind)];
 }
 
 using Json = nlohmann::ordered_json;
 
+/// Returns [of(0), of(1), ...] of `count` items.
+template <typename Of>
+Json list(int count, const Of& of) {
+  Json out = Json::array();
+  for (int i = 0; i < count; ++i) out.push_back(of(i));
+  return out;
+}
+
 Json frames(const estimator::Structure& s, const Eigen::VectorXd& theta, int first, int count,
             int offset) {
   const estimator::ParameterTable table(s);
-  Json out = Json::array();
-  for (int story = 1; story <= s.stories; ++story) {
-    Json row = Json::array();
-    for (int f = first; f < first + count; ++f)
-      row.push_back(theta[table.frame_stiffness(story, f) + offset]);
-    out.push_back(row);
-  }
-  return out;
+  return list(s.stories, [&](int story) {
+    return list(count,
+                [&](int f) { return theta[table.frame_stiffness(story + 1, first + f) + offset]; });
+  });
 }
 
 /// Returns a grid [story][x span][y span].
 Json panels(const estimator::Structure& s, const Eigen::VectorXd& theta, int offset) {
   const estimator::ParameterTable table(s);
-  Json out = Json::array();
-  for (int story = 1; s.panels() > 0 && story <= s.stories; ++story) {
-    Json floor = Json::array();
-    for (int x = 0; x < s.m() - 1; ++x) {
-      Json row = Json::array();
-      for (int y = 0; y < s.n() - 1; ++y)
-        row.push_back(theta[table.panel_stiffness(story, y * (s.m() - 1) + x) + offset]);
-      floor.push_back(row);
-    }
-    out.push_back(floor);
-  }
-  return out;
+  return list(s.panels() > 0 ? s.stories : 0, [&](int story) {
+    return list(s.m() - 1, [&](int x) {
+      return list(s.n() - 1, [&](int y) {
+        return theta[table.panel_stiffness(story + 1, y * (s.m() - 1) + x) + offset];
+      });
+    });
+  });
 }
 
 /// Returns a grid [story][x line][y line].
 Json masses(const estimator::Structure& s) {
-  const int rows = std::max(s.n(), 1);
-  const int columns = std::max(s.m(), 1);
-  Json out = Json::array();
-  for (int story = 0; story < s.stories; ++story) {
-    Json floor = Json::array();
-    for (int x = 0; x < columns; ++x) {
-      Json line = Json::array();
-      for (int y = 0; y < rows; ++y)
-        line.push_back(s.node_mass[static_cast<std::size_t>((story * rows + y) * columns + x)]);
-      floor.push_back(line);
-    }
-    out.push_back(floor);
-  }
-  return out;
+  const int rows = std::max(s.n(), 1), columns = std::max(s.m(), 1);
+  return list(s.stories, [&](int story) {
+    return list(columns, [&](int x) {
+      return list(rows, [&](int y) {
+        return s.node_mass[static_cast<std::size_t>((story * rows + y) * columns + x)];
+      });
+    });
+  });
 }
 
 Json true_parameters(const Scenario& scenario) {
