@@ -25,7 +25,7 @@ from hub import Hub, Process, free_ports  # noqa: E402
 from page import Page  # noqa: E402
 from proxy import join  # noqa: E402
 
-BUILDINGS = [("kobe-01", "Harbour tower", "Kobe", 34.682, 135.187), ("kobe-02", "City hall", "Kobe", 34.690, 135.195),
+BUILDINGS = [("kobe-01", "Harbor tower", "Kobe", 34.682, 135.187), ("kobe-02", "City hall", "Kobe", 34.690, 135.195),
              ("kobe-03", "Hospital", "Kobe", 34.701, 135.212), ("osaka-01", "Station block", "Osaka", 34.702, 135.495),
              ("osaka-02", "School", "Osaka", 34.674, 135.501), ("kyoto-01", "Library", "Kyoto", 35.003, 135.768)]
 DAMAGED, PARAMETER, FACTOR = "kobe-03", "kx_1_y2", 0.85

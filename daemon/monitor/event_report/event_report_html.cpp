@@ -24,7 +24,7 @@ std::string number(double value, const char* format) {
 const char* advice(EventColor color) {
   switch (color) {
     case EventColor::red:
-      return "Have a structural engineer look at the building before it is used as before.";
+      return "Have a structural engineer inspect the building before normal use.";
     case EventColor::yellow:
       return "Have a structural engineer read this report.";
     case EventColor::green:

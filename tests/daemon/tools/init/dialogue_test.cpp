@@ -56,9 +56,10 @@ TEST(InitDialogue, AWrongAnswerIsAskedAgainAndAnyCanBeChanged) {
                      "2", "4,3.5", ""});
   ASSERT_TRUE(plan) << person.said;
   EXPECT_EQ(plan->structure.story_height, (std::vector<double>{4, 3.5}));
-  EXPECT_NE(person.said.find("That does not do: a whole number from 1 to 200"), std::string::npos)
+  EXPECT_NE(person.said.find("Please answer again: a whole number from 1 to 200"),
+            std::string::npos)
       << person.said;
-  EXPECT_NE(person.said.find("That does not do: there are 3 numbers"), std::string::npos)
+  EXPECT_NE(person.said.find("Please answer again: there are 3 numbers"), std::string::npos)
       << person.said;
 }
 
@@ -102,7 +103,8 @@ TEST(InitDialogue, ColumnsThatSayNoPlaceAreAskedFor) {
   EXPECT_EQ(plan->channels[1].column.name, "acc1");
   EXPECT_EQ(plan->channels[2].column.name, "acc2");
   EXPECT_EQ(plan->rate_hz, 200);
-  EXPECT_NE(person.said.find("Which column is floor 1, frame y1, along x? There are acc2, acc1, "
+  EXPECT_NE(person.said.find("Which column belongs to floor 1, frame y1, along x? Columns without "
+                             "a place: acc2, acc1, "
                              "spare."),
             std::string::npos)
       << person.said;

@@ -35,10 +35,9 @@ TEST_F(InitCommand, WithoutATerminalAllThatIsMissingIsTold) {
 TEST_F(InitCommand, WritesWhatCheckAccepts) {
   const ShellResult said = shell(std::string("$F init ") + kHouse);
   EXPECT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(
-      said.out.find("building.toml: written. What follows:\n  framewatch check building.toml\n"
-                    "  framewatch run building.toml\n"),
-      std::string::npos)
+  EXPECT_NE(said.out.find("building.toml: written. Next steps:\n  framewatch check building.toml\n"
+                          "  framewatch run building.toml\n"),
+            std::string::npos)
       << said.out;
   EXPECT_NE(said.out.find("frames y1 to y2 move along x, frames x1 to x2 move along y"),
             std::string::npos)
@@ -58,7 +57,7 @@ TEST_F(InitCommand, OnATerminalItAsks) {
   const ShellResult left =
       shell("printf 'none\\nquit\\n' | timeout 60 script -qec \"$F init --out b.toml\" /dev/null");
   EXPECT_EQ(left.status, kBadInput) << left.out;
-  EXPECT_FALSE(left.out.find("left; nothing was written") == std::string::npos) << left.out;
+  EXPECT_FALSE(left.out.find("stopped; nothing was written") == std::string::npos) << left.out;
   EXPECT_EQ(shell("ls b.toml*").out, "");
 }
 
@@ -66,7 +65,7 @@ TEST_F(InitCommand, NeverWritesOverAFileUnlessForced) {
   test::write_file(directory_.path("building.toml"), "mine\n");
   const ShellResult said = shell(std::string("$F init ") + kHouse);
   EXPECT_EQ(said.status, kBadInput);
-  EXPECT_NE(said.err.find("building.toml: is there already; --force"), std::string::npos);
+  EXPECT_NE(said.err.find("building.toml: already exists; use --force"), std::string::npos);
   EXPECT_EQ(test::read_file(directory_.path("building.toml")), "mine\n");
   EXPECT_EQ(shell(std::string("$F init --force ") + kHouse).status, 0);
   EXPECT_EQ(shell("$F check building.toml").status, 0);
@@ -94,8 +93,8 @@ TEST_F(InitCommand, ColumnsAreNeverGuessed) {
   const ShellResult said = shell(plane);
   EXPECT_EQ(said.status, kBadInput);
   EXPECT_NE(
-      said.err.find("--channel NAME=1:y1: is missing: Which column is floor 1, frame y1, along "
-                    "x? There are acc1, acc2."),
+      said.err.find("--channel NAME=1:y1: is missing: Which column belongs to floor 1, frame y1, "
+                    "along x? Columns without a place: acc1, acc2."),
       std::string::npos)
       << said.err;
   EXPECT_EQ(shell(plane + "--channel acc1=1:y1 --channel acc2=2:x").status, 0);
@@ -105,9 +104,10 @@ TEST_F(InitCommand, ColumnsAreNeverGuessed) {
                                   "--channel acc1=3:x --channel base=1:x --channel acc2=1:x");
   EXPECT_EQ(wrong.status, kBadInput);
   for (const char* part :
-       {"acc1: write NAME=PLACE", "acc3=1:x: there is no such column; there are ",
-        "acc1=3:x: no place of this building; places are 0:x (base, along x) to 2:y1",
-        "acc2=1:x: base is there already"})
+       {"acc1: write NAME=PLACE",
+        "acc3=1:x: the file has no such column; columns without a place: ",
+        "acc1=3:x: this building has no such place; its places are 0:x (base, along x) to 2:y1",
+        "acc2=1:x: base already has this place"})
     EXPECT_NE(wrong.err.find(part), std::string::npos) << part << "\n" << wrong.err;
   const ShellResult few = shell(plane + "--force --bays 0x1 --span-y 4");
   EXPECT_NE(few.err.find("this building needs 5 channels"), std::string::npos) << few.err;
