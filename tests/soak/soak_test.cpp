@@ -18,7 +18,7 @@ constexpr std::int64_t kMaxGrowth_bytes = 3 << 20;  // SQLite's cache fills for 
 constexpr std::int64_t kWindowsPerStep = 10;        // lost when the clock steps
 constexpr std::int64_t kRepeatedPerStep = 3;        // and told twice
 
-TEST(Soak, LosesNothingAndRaisesNothing) {
+TEST(Soak, LosesNoSampleAndRaisesNoAlarm) {
   const test::TemporaryDirectory directory;
   SoakOptions o;
   o.days = kMinutes / 1440;
@@ -53,7 +53,7 @@ TEST(Soak, LosesNothingAndRaisesNothing) {
 
 /// A short window of weak motion may hold less noise than is taken off it: nothing is left to tell
 /// its errors by. In this night that is after 47 minutes for the first time.
-TEST(Soak, AWindowThatHoldsLessNoiseThanIsTakenOffSaysNothing) {
+TEST(Soak, PublishesNoValueIfTheNoiseCorrectionExceedsTheNoise) {
   constexpr double kSeconds = 2825, kRate_hz = 100;
   SoakOptions o;
   o.directory = "history";

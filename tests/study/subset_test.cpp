@@ -60,7 +60,7 @@ class StudyEffects : public testing::TestWithParam<HiddenEffect> {};
   GTEST_SKIP() << "diagnoses take minutes without optimisation; asan and release builds run them"
 #endif
 
-TEST_P(StudyEffects, AreNamedAtTheirPlaces) {
+TEST_P(StudyEffects, HaveNamesAndPlaces) {
   FRAMEWATCH_OPTIMISED_OR_SKIP();
   const Outcome o = diagnosed("catalogue", GetParam().name, GetParam().seed, GetParam().noise);
   EXPECT_TRUE(o.all_right()) << o.verdict;
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Subset, StudyEffects,
                          [](const auto& effect) { return std::string(effect.param.name); });
 
 // One mass would act along the same two directions.
-TEST(StudySubset, TwoEffectsAtOneCrossingAreBothFound) {
+TEST(StudySubset, FindsTwoEffectsAtOneCrossing) {
   FRAMEWATCH_OPTIMISED_OR_SKIP();
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "takes minutes under the sanitizers; the debug and release builds run it";
@@ -86,18 +86,18 @@ TEST(StudySubset, TwoEffectsAtOneCrossingAreBothFound) {
   EXPECT_TRUE(o.all_right()) << o.verdict;
 }
 
-TEST(StudySubset, NothingHiddenIsAdequate) {
+TEST(StudySubset, FindsTheModelAdequateIfNothingIsHidden) {
   EXPECT_EQ(diagnosed("nothing", "none", 4100).verdict, "adequate");
 }
 
-TEST(StudySubset, AnEffectThatIsNotInTheCatalogueIsNotNamedConfidently) {
+TEST(StudySubset, NamesAnUnknownEffectOnlyWithDoubt) {
   FRAMEWATCH_OPTIMISED_OR_SKIP();
   const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, kNoise, {"two_sided_gap"});
   EXPECT_FALSE(o.confidently_wrong) << (o.named.empty() ? "" : o.named.front());
   EXPECT_NE(o.verdict, "adequate");
 }
 
-TEST(DiagnoseRefuses, WhatItCannotJudge) {
+TEST(DiagnoseRefuses, RecordsThatItCannotJudge) {
   constexpr int kBadInput = 2;
   const test::TemporaryDirectory folder;
   const std::string directory = folder.path("case"), brief = folder.path("brief.csv");

@@ -109,7 +109,7 @@ class FleetTask : public testing::Test {
 };
 
 /// Of filters that stay as the design has them: otherwise every task is tuned to its own logs.
-TEST_F(FleetTask, TasksTogetherAreTheWholeReplay) {
+TEST_F(FleetTask, AllTasksGiveTheWholeReplay) {
   std::string building = test::read_file(test::table_config());
   const std::string section = "[estimator]\n";
   building.insert(building.find(section) + section.size(), "self_tune = false\n");
@@ -156,7 +156,7 @@ TEST_F(FleetTask, IsTunedToItsLogsFirst) {
   EXPECT_NE(said_.find("task 1: tuned on the record first: "), std::string::npos) << said_;
 }
 
-TEST_F(FleetTask, WhatIsDoneIsNotDoneAgain) {
+TEST_F(FleetTask, SkipsFinishedTasks) {
   ASSERT_EQ(run({1}).first, 0) << said_;
   const std::string first = test::read_file(output(1));
   const auto written = fs::last_write_time(output(1));
@@ -185,7 +185,7 @@ TEST_F(FleetTask, AnotherConfigurationNeedsAnotherManifest) {
   EXPECT_TRUE(fs::is_empty(directory_.path("out")));
 }
 
-TEST_F(FleetTask, OneThatFailsLeavesNothingAndHindersNoOther) {
+TEST_F(FleetTask, AFailedTaskLeavesNoFileAndStopsNoOther) {
   tasks_[0].logs = {directory_.path("none.lcmlog")};
   write_manifest();
   const auto [status, lines] = run({1, 2});
@@ -199,7 +199,7 @@ TEST_F(FleetTask, OneThatFailsLeavesNothingAndHindersNoOther) {
     EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos);
 }
 
-TEST_F(FleetTask, WhatIsIntactOfADamagedLogIsUsed) {
+TEST_F(FleetTask, UsesTheIntactPartOfADamagedLog) {
   std::string bytes = test::read_file(log_);
   bytes.replace(bytes.size() / 3, 100, std::string(100, '\x55'));
   test::write_file(log_, bytes);
@@ -209,7 +209,7 @@ TEST_F(FleetTask, WhatIsIntactOfADamagedLogIsUsed) {
   EXPECT_FALSE(lines[0]["notes"].empty());
 }
 
-TEST_F(FleetTask, ATimeWithoutSamplesIsDoneAndEmpty) {
+TEST_F(FleetTask, ATimeWithoutSamplesGivesAnEmptyOutput) {
   tasks_[0].from_us += 800 * kSecond_us;
   tasks_[0].to_us += 800 * kSecond_us;
   tasks_[0].warm_up_us = tasks_[0].from_us;
@@ -220,14 +220,14 @@ TEST_F(FleetTask, ATimeWithoutSamplesIsDoneAndEmpty) {
   EXPECT_TRUE(rows_of(output(1), INT64_MIN / 2, INT64_MAX / 2).empty());
 }
 
-TEST_F(FleetTask, TimesBetweenPeriodsAreRefused) {
+TEST_F(FleetTask, RefusesTimesBetweenPeriods) {
   tasks_[0].from_us += kSecond_us;
   write_manifest();
   EXPECT_EQ(run({1}).first, 1);
   EXPECT_NE(said_.find("multiples of the longest summary, 4 s"), std::string::npos) << said_;
 }
 
-TEST_F(FleetTask, NumbersThatTheManifestDoesNotHaveAreRefused) {
+TEST_F(FleetTask, RefusesNumbersBeyondTheManifest) {
   EXPECT_EQ(run({1, 99}).first, 2);
   EXPECT_NE(said_.find("has the tasks 1 to"), std::string::npos) << said_;
   EXPECT_TRUE(fs::is_empty(directory_.path("out")));
@@ -237,7 +237,7 @@ TEST_F(FleetTask, NumbersThatTheManifestDoesNotHaveAreRefused) {
 }
 
 /// The program itself: killed at any time, and asked again.
-TEST_F(FleetTask, KilledAtAnyTimeItGivesTheSameOutputInTheEnd) {
+TEST_F(FleetTask, GivesTheSameOutputAfterBeingKilled) {
   fs::create_directories(directory_.path("raw"));
   fs::copy_file(log_, directory_.path("raw/rec.lcmlog"));
   const std::string manifest = "$F fleet manifest building.toml OUT raw/rec.lcmlog --hours 1";
@@ -270,7 +270,7 @@ TEST_F(FleetTask, KilledAtAnyTimeItGivesTheSameOutputInTheEnd) {
   }
 }
 
-TEST_F(FleetTask, WhoComesSecondWaitsAndFindsItDone) {
+TEST_F(FleetTask, ASecondWorkerWaitsAndFindsTheTaskDone) {
   std::atomic<bool> has_run = false;
   std::thread second;
   {
@@ -290,7 +290,7 @@ TEST_F(FleetTask, WhoComesSecondWaitsAndFindsItDone) {
   EXPECT_NE(nowhere.take(directory_.path("none/x.lock")), "");
 }
 
-TEST_F(FleetTask, TheManifestCommandSaysEverythingThatIsWrong) {
+TEST_F(FleetTask, TheManifestCommandReportsEveryProblem) {
   const test::ShellResult said =
       test::shell(directory_, "$F fleet manifest building.toml out none.lcmlog nor.lcmlog");
   EXPECT_EQ(said.status, 2);

@@ -61,7 +61,7 @@ class Raw : public test::UplinkTest {
   int exports_ = 0;
 };
 
-TEST_F(Raw, ArrivesWholeAndNoFasterThanAllowed) {
+TEST_F(Raw, ArrivesWholeAtTheAllowedRate) {
   settings_.raw_kbit_s = 1000;
   begin_raw();
   ask("r1");
@@ -74,7 +74,7 @@ TEST_F(Raw, ArrivesWholeAndNoFasterThanAllowed) {
   EXPECT_EQ(kept_twice(), 0U);
 }
 
-TEST_F(Raw, GoesOnAfterARestart) {
+TEST_F(Raw, ContinuesAfterARestart) {
   settings_.raw_kbit_s = 1000;
   begin_raw();
   ask("r1");
@@ -90,7 +90,7 @@ TEST_F(Raw, GoesOnAfterARestart) {
   EXPECT_EQ(received("r1").size(), kFile_bytes);
 }
 
-TEST_F(Raw, AFullHubKeepsThePiecesInTheBuilding) {
+TEST_F(Raw, PiecesStayInTheBuildingWhileTheHubIsFull) {
   begin_raw();
   hub_.error = R"({"error":{"code":400,"description":"maximum bytes exceeded"}})";
   ask("r1");
@@ -101,7 +101,7 @@ TEST_F(Raw, AFullHubKeepsThePiecesInTheBuilding) {
   EXPECT_EQ(hub_.count("a/raw/r1/"), 10U);
 }
 
-TEST_F(Raw, OfWhatIsTooMuchOrCannotBeMadeItSaysWhy) {
+TEST_F(Raw, ReportsWhyAPieceCannotBeSent) {
   begin_raw();
   ask("r1", R"(,"bytes":1000)");
   run(5);

@@ -24,7 +24,7 @@ event_t live_event(int id, std::int64_t time_us) {
   return e;
 }
 
-TEST_F(UplinkRules, WhatTheHistoryHoldsArrivesOnce) {
+TEST_F(UplinkRules, SendsEveryMessageOfTheHistoryOnce) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   add_hour(test::kStart_us);
   begin();
@@ -36,7 +36,7 @@ TEST_F(UplinkRules, WhatTheHistoryHoldsArrivesOnce) {
   EXPECT_EQ(uplink_->status(now()).summaries_waiting, 0);
 }
 
-TEST_F(UplinkRules, ASummaryHasWhatTheHistoryHas) {
+TEST_F(UplinkRules, SendsASummaryAsTheHistoryHoldsIt) {
   add_hour(test::kStart_us);
   begin();
   run(5);
@@ -62,7 +62,7 @@ TEST_F(UplinkRules, ASummaryHasWhatTheHistoryHas) {
   ADD_FAILURE() << "no such summary";
 }
 
-TEST_F(UplinkRules, AnEventIsSentWhenItIsHeardAndOnceThough) {
+TEST_F(UplinkRules, SendsAnEventAtOnceAndOnlyOnce) {
   begin();
   run(2);
   uplink_->heard("EVENT", drivers::encoded(live_event(1, test::kStart_us)));
@@ -73,7 +73,7 @@ TEST_F(UplinkRules, AnEventIsSentWhenItIsHeardAndOnceThough) {
   EXPECT_EQ(kept_twice(), 0U);
 }
 
-TEST_F(UplinkRules, APeriodThatRunsIsNotSentAndOneThatIsOverIs) {
+TEST_F(UplinkRules, SendsAPeriodOnlyWhenItIsOver) {
   add_hour(test::kStart_us, 1);
   sql("DELETE FROM period WHERE start_us >= " +
       std::to_string(test::kStart_us + 1800 * test::kSecond));
@@ -86,7 +86,7 @@ TEST_F(UplinkRules, APeriodThatRunsIsNotSentAndOneThatIsOverIs) {
   EXPECT_EQ(hub_.count("a/summary/3600/"), 0U);
 }
 
-TEST_F(UplinkRules, APeriodThatGrewIsSentAgainWhenItIsClosed) {
+TEST_F(UplinkRules, ResendsAPeriodThatGrew) {
   add_hour(test::kStart_us, 1);
   begin();
   run(10);
@@ -103,7 +103,7 @@ TEST_F(UplinkRules, APeriodThatGrewIsSentAgainWhenItIsClosed) {
 }
 
 // Within minutes a stream takes one Nats-Msg-Id once.
-TEST_F(UplinkRules, APeriodThatGrewIsNoRepetitionToTheHub) {
+TEST_F(UplinkRules, TheHubAcceptsAPeriodThatGrew) {
   secret_ = "mine";
   add_hour(test::kStart_us, 1);
   begin();
@@ -116,7 +116,7 @@ TEST_F(UplinkRules, APeriodThatGrewIsNoRepetitionToTheHub) {
   EXPECT_EQ(kept_twice(), 0U);
 }
 
-TEST_F(UplinkRules, AHubThatIsAwayForHoursCostsNothingButTime) {
+TEST_F(UplinkRules, AnAbsentHubCostsOnlyTime) {
   begin();
   run(2);
   hub_.up = false;
@@ -136,7 +136,7 @@ TEST_F(UplinkRules, AHubThatIsAwayForHoursCostsNothingButTime) {
   EXPECT_EQ(hub_.count("a/summary/"), kPeriodsOfAnHour);
 }
 
-TEST_F(UplinkRules, AHubThatTakesNothingIsAskedOnceASecond) {
+TEST_F(UplinkRules, TriesAHubThatRefusesOnceASecond) {
   for (int i = 0; i < 400; ++i) add_event(i, test::kStart_us + i);
   begin();
   hub_.answers = false;
@@ -150,7 +150,7 @@ TEST_F(UplinkRules, AHubThatTakesNothingIsAskedOnceASecond) {
   EXPECT_EQ(hub_.count("a/event/gap/"), 400U);
 }
 
-TEST_F(UplinkRules, AfterAPowerCutOfTheHubNothingIsMissing) {
+TEST_F(UplinkRules, LosesNothingInAPowerCutOfTheHub) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   add_hour(test::kStart_us);
   begin();
@@ -165,7 +165,7 @@ TEST_F(UplinkRules, AfterAPowerCutOfTheHubNothingIsMissing) {
   EXPECT_EQ(hub_.count("a/summary/"), kPeriodsOfAnHour);
 }
 
-TEST_F(UplinkRules, ASecondBreakBeforeWhatWasLostIsSentAgainForgetsNothing) {
+TEST_F(UplinkRules, LosesNothingInASecondOutageDuringResending) {
   for (int id = 0; id < 3; ++id) add_event(id, test::kStart_us + id);
   begin();
   run(2);
@@ -183,7 +183,7 @@ TEST_F(UplinkRules, ASecondBreakBeforeWhatWasLostIsSentAgainForgetsNothing) {
   EXPECT_EQ(hub_.count("a/event/"), 3U);
 }
 
-TEST_F(UplinkRules, ALineThatBreaksAgainAndAgainSendsNothingForEver) {
+TEST_F(UplinkRules, AnUnstableLineDoesNotResendForever) {
   add_event(1, test::kStart_us);
   begin();
   run(2);
@@ -204,7 +204,7 @@ TEST_F(UplinkRules, ALineThatBreaksAgainAndAgainSendsNothingForEver) {
   EXPECT_EQ(sent, 2u);  // after the first break, 6 min later, and not after those that followed
 }
 
-TEST_F(UplinkRules, WhatWasAcknowledgedLongBeforeIsNotSentAgain) {
+TEST_F(UplinkRules, DoesNotResendOldAcknowledgedMessages) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   begin();
   run(10);
@@ -216,7 +216,7 @@ TEST_F(UplinkRules, WhatWasAcknowledgedLongBeforeIsNotSentAgain) {
   EXPECT_EQ(kept_twice(), 1U);  // the newest alone
 }
 
-TEST_F(UplinkRules, AnUplinkThatIsKilledSendsTheRest) {
+TEST_F(UplinkRules, SendsTheRestAfterBeingKilled) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   begin();
   uplink_->step(now());  // sent, and no answer read
@@ -226,7 +226,7 @@ TEST_F(UplinkRules, AnUplinkThatIsKilledSendsTheRest) {
   EXPECT_EQ(hub_.count("a/event/gap/"), std::size_t{kEvents});
 }
 
-TEST_F(UplinkRules, AClockThatJumpsLosesNothing) {
+TEST_F(UplinkRules, LosesNothingWhenTheClockJumps) {
   begin();
   run(2);
   add_event(1, test::kStart_us);
@@ -249,7 +249,7 @@ TEST_F(UplinkRules, AClockThatJumpsLosesNothing) {
   EXPECT_EQ(hub_.count("a/event/gap/4/"), 1U);
 }
 
-TEST_F(UplinkRules, OlderSummariesGoAtFourASecondAndEventsPassThem) {
+TEST_F(UplinkRules, SendsFourOldSummariesASecondAfterEvents) {
   for (int h = 0; h < 24; ++h) add_hour(test::kStart_us + h * test::kHour_us);
   begin();
   run(5);
@@ -262,7 +262,7 @@ TEST_F(UplinkRules, OlderSummariesGoAtFourASecondAndEventsPassThem) {
   EXPECT_EQ(hub_.count("a/summary/"), 24 * kPeriodsOfAnHour);
 }
 
-TEST_F(UplinkRules, AroundAnEventMinutesAreSent) {
+TEST_F(UplinkRules, SendsMinutesAroundAnEvent) {
   add_hour(test::kStart_us);
   add_hour(test::kStart_us + test::kHour_us);
   add_event(1, test::kStart_us + 1800 * test::kSecond, 1);
@@ -271,7 +271,7 @@ TEST_F(UplinkRules, AroundAnEventMinutesAreSent) {
   EXPECT_EQ(hub_.count("a/summary/60/"), 70U);  // 10 before it, 60 after
 }
 
-TEST_F(UplinkRules, AFullHubRefusesAndTheBuildingKeeps) {
+TEST_F(UplinkRules, KeepsMessagesThatAFullHubRefuses) {
   add_event(1, test::kStart_us);
   begin();
   // As JetStream says it.
@@ -284,7 +284,7 @@ TEST_F(UplinkRules, AFullHubRefusesAndTheBuildingKeeps) {
   EXPECT_EQ(hub_.count("a/event/"), 1U);
 }
 
-TEST_F(UplinkRules, AHistoryThatIsSetAsideAndBegunAnewIsReadOn) {
+TEST_F(UplinkRules, ContinuesWithANewHistory) {
   add_event(1, test::kStart_us);
   begin();
   run(3);
@@ -301,7 +301,7 @@ TEST_F(UplinkRules, AHistoryThatIsSetAsideAndBegunAnewIsReadOn) {
   EXPECT_EQ(uplink_->status(now()).store_trouble, "");
 }
 
-TEST_F(UplinkRules, ADamagedOutboxIsSetAsideAndEverythingIsSentAgain) {
+TEST_F(UplinkRules, SetsADamagedOutboxAsideAndResendsEverything) {
   add_event(1, test::kStart_us);
   framewatch::test::write_file(folder_.path("uplink.sqlite"), std::string(8192, 'x'));
   begin();
@@ -310,7 +310,7 @@ TEST_F(UplinkRules, ADamagedOutboxIsSetAsideAndEverythingIsSentAgain) {
   EXPECT_EQ(uplink_->status(now()).store_trouble, "");
 }
 
-TEST_F(UplinkRules, AnOutboxThatCannotBeWrittenIsSaidAndFloodsNobody) {
+TEST_F(UplinkRules, ReportsAnUnwritableOutboxWithoutFlooding) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   std::filesystem::create_directory(folder_.path("uplink.sqlite"));
   begin();

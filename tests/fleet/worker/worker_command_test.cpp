@@ -26,7 +26,7 @@ TEST(MissingDays, ReadsAnInventory) {
   EXPECT_EQ(days[1].counts.periods.at(600), 144);
 }
 
-TEST(MissingDays, WhatIsNoInventoryNamesNoDay) {
+TEST(MissingDays, AMalformedInventoryNamesNoDay) {
   for (const std::string& bad :
        {std::string(""), std::string("[]"), std::string("{}"),
         std::string(R"({"format":1,"days":[]})"), day(R"("from_us":"x","events":3,"periods":{}})"),
@@ -37,7 +37,7 @@ TEST(MissingDays, WhatIsNoInventoryNamesNoDay) {
     EXPECT_TRUE(inventory_days(bad).empty()) << bad;
 }
 
-TEST(MissingDaysOnServer, AreThoseOfWhichTheDatabaseHasLess) {
+TEST(MissingDaysOnServer, AreTheDaysThatTheDatabaseLacks) {
   const char* const where = std::getenv("FRAMEWATCH_POSTGRES");
   if (where == nullptr) GTEST_SKIP() << "no PostgreSQL (./test --fleet starts one)";
   Database look;

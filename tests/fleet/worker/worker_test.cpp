@@ -68,7 +68,7 @@ TEST_F(WorkerTest, StoresAndThenAcknowledges) {
   EXPECT_EQ(worker_.counters().batches, 1);
 }
 
-TEST_F(WorkerTest, WhileTheDatabaseIsAwayNothingIsAcknowledgedAndNothingLost) {
+TEST_F(WorkerTest, AcknowledgesAndLosesNothingWithoutTheDatabase) {
   database_.problem = "connection refused";
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(20'000'000);
@@ -86,7 +86,7 @@ TEST_F(WorkerTest, WhileTheDatabaseIsAwayNothingIsAcknowledgedAndNothingLost) {
   EXPECT_EQ(worker_.counters().trouble, "");
 }
 
-TEST_F(WorkerTest, OneMessageThatTheDatabaseDoesNotTakeStopsNoOther) {
+TEST_F(WorkerTest, OneRefusedMessageStopsNoOther) {
   database_.bad_events = {3};
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(2'000'000);
@@ -99,7 +99,7 @@ TEST_F(WorkerTest, OneMessageThatTheDatabaseDoesNotTakeStopsNoOther) {
   EXPECT_EQ(worker_.counters().refused, 1);
 }
 
-TEST_F(WorkerTest, RefusedMessagesAreAcknowledgedToo) {
+TEST_F(WorkerTest, AcknowledgesRefusedMessages) {
   Message forged = event_message("kobe", 1);
   forged.subject = "fw.up.osaka.event";
   hub_.hold(forged);
@@ -119,7 +119,7 @@ TEST_F(WorkerTest, AsksAgainAfterANewConnection) {
   EXPECT_EQ(hub_.requests(), requests + 4);
 }
 
-TEST_F(WorkerTest, WhatComesAgainBecauseTheDatabaseWasAwayIsNoFlood) {
+TEST_F(WorkerTest, RepeatsAfterADatabaseOutageAreNoFlood) {
   for (std::int64_t id = 0; id < kMessages / 2; ++id) hub_.hold(event_message("kobe", id));
   database_.problem = "connection refused";
   for (int i = 0; i < 5; ++i) {
@@ -132,7 +132,7 @@ TEST_F(WorkerTest, WhatComesAgainBecauseTheDatabaseWasAwayIsNoFlood) {
   EXPECT_EQ(worker_.counters().flooding, 0);
 }
 
-TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
+TEST_F(WorkerTest, AcknowledgesAndCountsAFlood) {
   const auto more = kMessages + 20;
   for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
   hub_.hold(event_message("osaka", 1));
@@ -148,7 +148,7 @@ TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
   EXPECT_EQ(floods, 20);
 }
 
-TEST_F(WorkerTest, AFloodBesideAMessageThatTheDatabaseDoesNotTakeIsNotStoredEither) {
+TEST_F(WorkerTest, StoresNoFloodAlongWithARefusedMessage) {
   database_.bad_events = {3};
   const auto more = kMessages + 20;
   for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
@@ -162,7 +162,7 @@ TEST_F(WorkerTest, AFloodBesideAMessageThatTheDatabaseDoesNotTakeIsNotStoredEith
   EXPECT_EQ(worker_.counters().flooding, 20);
 }
 
-TEST_F(WorkerTest, WhatTheDatabaseDidNotTakeIsGivenBackAndTakenWhenItIsThereAgain) {
+TEST_F(WorkerTest, ReturnsUnstoredMessagesAndStoresThemLater) {
   database_.problem = "connection refused";
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(1'000'000);
@@ -173,13 +173,13 @@ TEST_F(WorkerTest, WhatTheDatabaseDidNotTakeIsGivenBackAndTakenWhenItIsThereAgai
   EXPECT_EQ(hub_.held(), 0u);
 }
 
-TEST_F(WorkerTest, EveryMessageIsTakenOnce) {
+TEST_F(WorkerTest, StoresEveryMessageOnce) {
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(2'000'000);
   EXPECT_EQ(worker_.counters().stored, 10);
 }
 
-TEST_F(WorkerTest, AsksABuildingForDaysOfWhichTheDatabaseHasLessThanItsInventory) {
+TEST_F(WorkerTest, RequestsDaysThatTheDatabaseLacks) {
   const Message inventory = packed(up_subject("kobe", "inventory"),
                                    newest_key("kobe", "inventory", 1), "json", {'{', '}'}, "");
   missing_ = std::vector<std::int64_t>(7, kHub_us - 86'400'000'000);
@@ -198,7 +198,7 @@ TEST_F(WorkerTest, AsksABuildingForDaysOfWhichTheDatabaseHasLessThanItsInventory
   EXPECT_EQ(hub_.commands().size(), Worker::kMaxResent_days);  // once for an inventory
 }
 
-TEST_F(WorkerTest, AsksForNothingWhileTheDatabaseIsAwayOrHasEverything) {
+TEST_F(WorkerTest, RequestsNothingWithoutNeedOrDatabase) {
   for (const char* name : {"kobe", "osaka"}) {
     hub_.hold(packed(up_subject(name, "inventory"), newest_key(name, "inventory", 1), "json",
                      {'{', '}'}, ""));
@@ -208,7 +208,7 @@ TEST_F(WorkerTest, AsksForNothingWhileTheDatabaseIsAwayOrHasEverything) {
   }
 }
 
-TEST(FloodGateTest, EveryHourBeginsAnew) {
+TEST(FloodGateTest, ResetsEveryHour) {
   FloodGate gate(kMessages);
   for (std::int64_t i = 0; i < kMessages; ++i) EXPECT_TRUE(gate.takes("a", 1, kHub_us));
   EXPECT_FALSE(gate.takes("a", 7, kHub_us));

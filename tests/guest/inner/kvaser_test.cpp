@@ -19,7 +19,7 @@ void up(const std::string& name) {
 
 /// Two PCI cards on one bus: nodes send on can1, can0 listens, is taken out of the machine and put
 /// in again.
-TEST(Kvaser, ACardTakenOutAndPutInIsSurvivedAndCounted) {
+TEST(Kvaser, SurvivesAndCountsACardThatIsRemovedAndInserted) {
   if (std::getenv("CAN_GUEST_KVASER") == nullptr) GTEST_SKIP() << "only in run-in-vm";
   constexpr int kInstants = 1200, kOut = 400, kIn = 500;
   up("can0");

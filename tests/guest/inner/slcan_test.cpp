@@ -77,7 +77,7 @@ class Adapter {
   std::string name_;
 };
 
-TEST(Slcan, BusOffAndAnUnpluggedAdapterAreSurvivedAndCounted) {
+TEST(Slcan, SurvivesAndCountsBusOffAndAnUnpluggedAdapter) {
   auto adapter = std::make_unique<Adapter>();
   const daemon::Config config = example_on("raw_int16", adapter->name());
   LiveBuses live(config);

@@ -71,7 +71,7 @@ TEST(Vcan, ASaturatedBusLosesNothing) {
   fmt::print("{} frames in {:.1f} s, 0 lost\n", kNodes * kInstants, took.count());
 }
 
-TEST(Vcan, AnInterfaceThatGoesAndComesLosesWhatItLost) {
+TEST(Vcan, AnInterfaceThatDisappearsLosesOnlyItsOwnFrames) {
   constexpr double kSeconds = 16;
   const Vcan vcan("vcan0");
   const daemon::Config config = example_on("tower", "vcan0");

@@ -34,7 +34,7 @@ struct BadBus {
   BadBus& operator=(const BadBus&) = delete;
 };
 
-TEST(Vxcan, LossReorderingAndJitterPublishNothingWrong) {
+TEST(Vxcan, PublishesNoWrongValueUnderLossReorderingAndJitter) {
   constexpr int kInstants = 2000;
   const BadBus bad_bus;
   const daemon::Config config = example_on("raw_int16", "vx1");
@@ -108,7 +108,7 @@ TEST(Vxcan, LossReorderingAndJitterPublishNothingWrong) {
 
 /// While 5 % are lost hardly a window is whole; with a fiftieth of that some are. What is published
 /// is within its errors of the truth.
-TEST(Vxcan, EstimatesOfALossyBusAreRightOrNone) {
+TEST(Vxcan, EstimatesOfALossyBusAreRightOrMissing) {
   constexpr double kStiffness_npm = 1.3e6, kSeconds = 24;
   constexpr double kErrors = 6, kLimit_ratio = 0.02;
   constexpr std::int64_t kEnoughLost = 40;
