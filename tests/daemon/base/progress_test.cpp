@@ -52,7 +52,7 @@ class Terminal {
   int terminal_;
 };
 
-TEST(ProgressLine, FollowsWhatIsReadOfFiles) {
+TEST(ProgressLine, FollowsTheBytesReadFromFiles) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("x");
   test::write_file(path, std::string(kBytes, 'x'));
@@ -70,7 +70,7 @@ TEST(ProgressLine, FollowsWhatIsReadOfFiles) {
   EXPECT_NE(text.find(" s left, reading x"), std::string::npos) << text;
 }
 
-TEST(ProgressLine, SaysNoTimeOfWhatAPackedLogHolds) {
+TEST(ProgressLine, PredictsNoTimeForACompressedLog) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("x.zst");
   test::write_file(path, std::string(kBytes, 'x'));

@@ -14,7 +14,7 @@
 namespace framewatch::daemon {
 namespace sqlite_file_test {
 
-TEST(SqliteFile, AStatementThatFailsFailsTheTransaction) {
+TEST(SqliteFile, AFailedStatementFailsTheTransaction) {
   const test::TemporaryDirectory directory;
   SqliteFile file;
   ASSERT_TRUE(file.open(directory.path("db")));
@@ -33,7 +33,7 @@ TEST(SqliteFile, AStatementThatFailsFailsTheTransaction) {
   EXPECT_EQ(count.integer(0), 0);
 }
 
-TEST(SqliteFile, AStatementThatTheSchemaHasNotFailsWhateverIsAskedOfIt) {
+TEST(SqliteFile, AnInvalidStatementFailsInEveryCall) {
   const test::TemporaryDirectory directory;
   SqliteFile file;
   ASSERT_TRUE(file.open(directory.path("db")));
@@ -73,7 +73,7 @@ TEST(DamagedDatabase, IsSetAsideWithItsLog) {
   EXPECT_EQ(test::read_file(aside.path), "h.sqlite");
 }
 
-TEST(DamagedDatabase, TheThreeLargestStay) {
+TEST(DamagedDatabase, KeepsTheThreeLargest) {
   const test::TemporaryDirectory directory;
   SetAside aside;
   for (const int bytes : {50, 10, 40, 20, 30}) {

@@ -40,7 +40,7 @@ class MaxSize : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(MaxSize, EveryCommandRefusesWhatUnpacksToTooMuchAndSaysWhatAllowsIt) {
+TEST_F(MaxSize, EveryCommandRefusesTooLargeFilesAndNamesTheOption) {
   for (const char* command :
        {"repair x.lcmlog.zst", "repair x.lcmlog.zst --check",
         "replay table.toml x.lcmlog.zst --out o.csv", "diff x.lcmlog.zst x.lcmlog.zst",

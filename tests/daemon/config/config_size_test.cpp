@@ -44,7 +44,7 @@ struct TooLarge {
   std::string line, part;
 };
 
-TEST(ConfigSize, WhatIsTooLargeIsRefusedWithItsLineBeforeMemoryIsTaken) {
+TEST(ConfigSize, RefusesTooLargeValuesWithTheirLineBeforeAllocating) {
   const TooLarge kTooLarge[] = {
       {"stories", tower(1000, 3, ""), "2:11", "structure.stories: the estimation would take"},
       {"window", tower(2, 1, "rate_hz = 100000\nwindow_s = 3600\nboxplot_windows = 100000\n"),
@@ -78,7 +78,7 @@ TEST(ConfigSize, WhatIsTooLargeIsRefusedWithItsLineBeforeMemoryIsTaken) {
   }
 }
 
-TEST(ConfigSize, ABuildingThatIsTooLargeToBeSimulatedHasNoGap) {
+TEST(ConfigSize, DisablesTheGapForABuildingTooLargeToSimulate) {
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(parse_config("c.toml", tower(100, 3, "") + "[gap]\nmodel = \"m\"\n", problems));
   ASSERT_EQ(problems.size(), 1u) << test::told(problems);
@@ -87,7 +87,7 @@ TEST(ConfigSize, ABuildingThatIsTooLargeToBeSimulatedHasNoGap) {
       << test::told(problems);
 }
 
-TEST(ConfigSize, WhatIsMeasuredInPerformanceIsTaken) {
+TEST(ConfigSize, AcceptsEveryBuildingOfThePerformanceTable) {
   std::vector<ConfigProblem> problems;
   EXPECT_TRUE(parse_config("c.toml", tower(300, 3, ""), problems)) << test::told(problems);
   EXPECT_TRUE(parse_config("c.toml", tower(60, 1, "rate_hz = 1000\n"), problems))

@@ -49,7 +49,7 @@ class HeaderDifferences : public testing::Test {
   drivers::Record record_;
 };
 
-TEST_F(HeaderDifferences, NoneAreSaidWhereTheyAgree) {
+TEST_F(HeaderDifferences, AreEmptyIfHeaderAndConfigurationAgree) {
   EXPECT_TRUE(header_differences(config_, record_).empty());
   header(1).azimuth_deg = 23;
   EXPECT_TRUE(header_differences(config_, record_).empty()) << "azimuths are rounded";
@@ -60,7 +60,7 @@ TEST_F(HeaderDifferences, NoneAreSaidWhereTheyAgree) {
   EXPECT_TRUE(header_differences(config_, record_).empty()) << "no headers";
 }
 
-TEST_F(HeaderDifferences, AnAxisTheOtherWayRoundNeedsAPolarity) {
+TEST_F(HeaderDifferences, ReportAnOppositeAxisWithItsPolarity) {
   header(1).azimuth_deg = 200;
   expect_one(
       "channel second: the record's header contradicts the configuration: the sensor points to "
@@ -72,7 +72,7 @@ TEST_F(HeaderDifferences, AnAxisTheOtherWayRoundNeedsAPolarity) {
   expect_one("set polarity = 1");
 }
 
-TEST_F(HeaderDifferences, AnotherAzimuthSaysHowMuchIsTakenForWhat) {
+TEST_F(HeaderDifferences, ReportAnotherAzimuthWithTheSharesOfMotion) {
   header(2).azimuth_deg = 170;
   expect_one(
       "its values contain 50 % of the motion in the configured direction and 87 % of the motion "
@@ -84,7 +84,7 @@ TEST_F(HeaderDifferences, AnotherAzimuthSaysHowMuchIsTakenForWhat) {
   EXPECT_TRUE(header_differences(config_, record_).empty());
 }
 
-TEST_F(HeaderDifferences, WithoutTheBuildingsAzimuthTheMostCommonIsIt) {
+TEST_F(HeaderDifferences, UseTheMostCommonAzimuthByDefault) {
   config_.azimuth_y_deg.reset();
   header(3).azimuth_deg = 60;
   expect_one(
@@ -92,13 +92,13 @@ TEST_F(HeaderDifferences, WithoutTheBuildingsAzimuthTheMostCommonIsIt) {
       "azimuth 60 deg, but the configuration says 20 deg");
 }
 
-TEST_F(HeaderDifferences, AVerticalAxisIsNoMotionOfFrames) {
+TEST_F(HeaderDifferences, ReportAVerticalAxis) {
   header(1).azimuth_deg.reset();
   header(1).elevation_deg = 90;
   expect_one("the sensor measures up, but the configuration says along y");
 }
 
-TEST_F(HeaderDifferences, AnotherLevelIsSaidWithTheStoryThatAgrees) {
+TEST_F(HeaderDifferences, ReportAnotherLevelWithTheStoryToSet) {
   header(1).place = "4th floor";
   expect_one("the sensor is on floor 4 (\"4th floor\"), but the configuration says story 1");
   expect_one("set story 3 (counted as for the other channels)");
@@ -112,7 +112,7 @@ TEST_F(HeaderDifferences, AnotherLevelIsSaidWithTheStoryThatAgrees) {
   EXPECT_TRUE(header_differences(config_, record_).empty());
 }
 
-TEST_F(HeaderDifferences, AScaleOnTopOfTheFilesUnitIsSaid) {
+TEST_F(HeaderDifferences, ReportAScaleBesideTheFilesUnit) {
   axis(0).scale = 0.01;
   expect_one(
       "its values, cm/s2 in the file, are already converted to m/s^2: scale = 0.01 multiplies them "

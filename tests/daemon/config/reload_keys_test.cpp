@@ -68,7 +68,7 @@ TEST(ReloadedConfig, TakesEveryKeyOfItsReloadClassAndNoOther) {
   EXPECT_GT(taken, 25);
 }
 
-TEST(ReloadedConfig, KeepsWhatTakesARestart) {
+TEST(ReloadedConfig, KeepsKeysThatNeedARestart) {
   const Config running = test::good(kEverySection);
   Config other = running;
   other.lcm.url = "udpm://other:1";
@@ -86,7 +86,7 @@ TEST(ReloadedConfig, KeepsWhatTakesARestart) {
   EXPECT_TRUE(next.can.buses.empty());
 }
 
-TEST(ReloadedConfig, TakesWholeSectionsAndWhatFollowsFromThem) {
+TEST(ReloadedConfig, TakesWholeSectionsAndDerivedValues) {
   const Config running = test::good(test::kGoodConfig);
   const Config fresh = test::good(kEverySection);
   const Config next = reloaded(running, fresh);
@@ -108,7 +108,7 @@ std::map<std::string, Reach> reaches(const std::string& before, const std::strin
   return out;
 }
 
-TEST(ReloadedConfig, ClassesAreThoseOfTheTable) {
+TEST(ReloadedConfig, UsesTheReloadClassesOfTheTable) {
   for (const Option& o : options()) {
     if (!o.reload) continue;
     const std::string path = std::string(o.section) + "." + std::string(o.key);
@@ -119,7 +119,7 @@ TEST(ReloadedConfig, ClassesAreThoseOfTheTable) {
   }
 }
 
-TEST(ReloadedConfig, AnEmptySectionIsAChangeWhereItSwitchesSomethingOn) {
+TEST(ReloadedConfig, AnEmptySectionCountsAsAChangeIfItEnablesAFeature) {
   for (const char* section : {"watch", "gap", "actions"})
     EXPECT_EQ(reaches("", "[" + std::string(section) + "]\n").at(section), Reach::settings);
   for (const char* section : {"history", "estimator", "lcm", "structure.design", "unheard_of"})

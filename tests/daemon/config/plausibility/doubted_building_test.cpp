@@ -98,7 +98,7 @@ std::string model(const std::string& kx) {
   return test::replaced(text, "ky_npm = [[12e6, 10e6], [11e6, 11e6]]", "ky_npm = " + kx);
 }
 
-TEST(DoubtedBuilding, AnOrdinaryHouseAndAModelAreNotDoubted) {
+TEST(DoubtedBuilding, AcceptsAnOrdinaryHouseAndAModel) {
   EXPECT_EQ(doubts_of(kHouse), "");
   EXPECT_EQ(doubts_of(model("[[11e3, 9e3], [8e3, 9e3]]")), "");
 }
@@ -137,7 +137,7 @@ TEST(DoubtedBuilding, MassesInTonnes) {
   EXPECT_NE(told.find("structure.design: with"), std::string::npos) << told;
 }
 
-TEST(DoubtedBuilding, AFloorsMassAtEachOfItsNodes) {
+TEST(DoubtedBuilding, AWholeFloorsMassAtEachNode) {
   std::string text = with("1800.0", "[[[1800, 1800], [1800, 1800]], [[2e4, 2e4], [2e4, 2e4]]]");
   expect_doubt(text, {"c.toml:8:49: ", "of floor 2 are 3.33e+03 kg/m^2",
                       "the whole floor's mass given to each of its nodes?"});
@@ -168,7 +168,7 @@ TEST(DoubtedBuilding, OneStoryAThousandTimesAsStiffAsAnother) {
        "100 times"});
 }
 
-TEST(DoubtedBuilding, WhatIsShippedIsNotDoubted) {
+TEST(DoubtedBuilding, AcceptsShippedConfigurations) {
   int seen = 0;
   for (const char* folder : {"/configs", "/configs/can"})
     for (const auto& entry :
@@ -190,7 +190,7 @@ TEST(DoubtedBuilding, WhatIsShippedIsNotDoubted) {
   EXPECT_GE(seen, 17);
 }
 
-TEST(DoubtedBuilding, CheckRunAndReplayTellAndGoOn) {
+TEST(DoubtedBuilding, CheckRunAndReplayWarnAndContinue) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("house.toml"), with("[3.5, 3.5]", "400"));
   const std::string doubt = "house.toml:7:18: structure.story_height_m: 400 m";

@@ -52,7 +52,7 @@ bool may_mount() {
   return child.wait() == 0;
 }
 
-TEST(HistoryDisk, AFullDiskIsAnAlarmAndNothingIsLostWhenThereIsRoomInTime) {
+TEST(HistoryDisk, AFullDiskRaisesAnAlarmAndLosesNothingIfFreedInTime) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   if (!may_mount()) GTEST_SKIP() << "a small file system cannot be mounted here";
   std::string error;

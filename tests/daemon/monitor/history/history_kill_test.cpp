@@ -82,7 +82,7 @@ std::map<std::int64_t, std::int64_t> committed(const std::string& directory, boo
   return out;
 }
 
-TEST(KillStorm, LosesASecondOfRawSamplesAtMostAndNothingCommitted) {
+TEST(KillStorm, LosesAtMostASecondOfRawSamplesAndNothingCommitted) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   const test::TemporaryDirectory directory;
   const std::string config = config_with_history(directory), history = directory.path("h");

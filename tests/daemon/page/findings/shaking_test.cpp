@@ -53,7 +53,7 @@ class ShakingTest : public ::testing::Test {
   Shaking shaking_;
 };
 
-TEST_F(ShakingTest, SaysHowFarEachStoryDriftedAndWhatTheBaseBore) {
+TEST_F(ShakingTest, ReportsDriftOfEachStoryAndBaseShear) {
   for (std::int64_t i = 0; i < std::llround(kEnd_s * kRate_hz); ++i)
     shaking_.push(at(i, size_at(static_cast<double>(i) / kRate_hz)));
   const Shake* shake = shaking_.newest();
@@ -81,7 +81,7 @@ TEST_F(ShakingTest, IsExactInAMotionThatSwellsSlowly) {
   EXPECT_NEAR(accel_of(*shake, 1), kDrift_m * w * w, kGround_mps2);
 }
 
-TEST_F(ShakingTest, RestIsNoShakeAndALostSensorGivesNoNumber) {
+TEST_F(ShakingTest, ReportsNoShakeAtRestAndNoNumberForALostSensor) {
   for (std::int64_t i = 0; i < 3000; ++i) shaking_.push(at(i, 0));
   EXPECT_EQ(shaking_.newest(), nullptr);
   EXPECT_GT(shaking_.first_us(), 0);

@@ -39,7 +39,7 @@ service_t forged() {
   return s;
 }
 
-TEST(Status, WhatIsHeardReachesNoTerminalRaw) {
+TEST(Status, PrintsNoForeignBytesToTheTerminal) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::atomic<bool> stop = false;
   std::thread sender([&] {

@@ -14,7 +14,7 @@ std::string all(const EventRing& ring, EventRing::Cursor& cursor, std::size_t st
   return out;
 }
 
-TEST(EventRing, EveryViewerReadsEverythingInItsOwnPieces) {
+TEST(EventRing, EveryViewerReadsEverythingAtItsOwnPace) {
   EventRing ring(4);
   EventRing::Cursor a = ring.join("first\n\n"), b = ring.join("");
   std::string whole_a, whole_b, expected;
@@ -29,7 +29,7 @@ TEST(EventRing, EveryViewerReadsEverythingInItsOwnPieces) {
   EXPECT_EQ(a.dropped, 0u);
 }
 
-TEST(EventRing, ASlowViewerIsToldWhatItLost) {
+TEST(EventRing, TellsASlowViewerWhatItLost) {
   EventRing ring(4);
   EventRing::Cursor slow = ring.join("");
   ring.push("n", "0");

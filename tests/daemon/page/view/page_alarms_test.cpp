@@ -65,7 +65,7 @@ class PageAlarmsTest : public testing::Test {
   using Ids = std::vector<std::int64_t>;
 };
 
-TEST_F(PageAlarmsTest, WhatRunNoLongerSaysIsOver) {
+TEST_F(PageAlarmsTest, ClosesEventsThatRunNoLongerRaises) {
   (void)alarms_.note(event(1));
   (void)alarms_.note(event(2));
   EXPECT_EQ(alarms_.still_raised(report({1, 2})).size(), 0u);
@@ -83,13 +83,13 @@ TEST_F(PageAlarmsTest, WhatRunNoLongerSaysIsOver) {
   EXPECT_EQ(shown(), (Ids{1, 2, 3}));
 }
 
-TEST_F(PageAlarmsTest, WhatThePageFoundItselfStays) {
+TEST_F(PageAlarmsTest, KeepsEventsThatThePageFound) {
   (void)alarms_.note_own(event(7, "stiffness_change"));
   EXPECT_EQ(alarms_.still_raised(report({})).size(), 0u);
   EXPECT_EQ(shown(), Ids{7});
 }
 
-TEST_F(PageAlarmsTest, AcknowledgeAllReachesEverythingThatIsShown) {
+TEST_F(PageAlarmsTest, AcknowledgeAllCoversEveryShownEvent) {
   (void)alarms_.note(event(1));
   (void)alarms_.note_own(event(7, "stiffness_change"));
   (void)alarms_.acknowledged(all_at(0, {}));
@@ -105,7 +105,7 @@ TEST_F(PageAlarmsTest, AcknowledgeAllReachesEverythingThatIsShown) {
   EXPECT_EQ(open(), 0u);
 }
 
-TEST_F(PageAlarmsTest, WhatWasAcknowledgedBeforeThePageListenedIsNotItsOwn) {
+TEST_F(PageAlarmsTest, AnEarlierAcknowledgementDoesNotCoverThePagesOwnEvents) {
   (void)alarms_.note_own(event(7, "stiffness_change"));
   (void)alarms_.acknowledged(all_at(5, {}));
   EXPECT_EQ(open(), 1u);

@@ -65,7 +65,7 @@ class PageWatchTest : public ::testing::Test {
   Config config_ = test::good(test::kGoodConfig);
 };
 
-TEST_F(PageWatchTest, NamesTheFrameThatDroppedAndWhenItIsBack) {
+TEST_F(PageWatchTest, NamesTheFrameThatLostStiffnessUntilItReturns) {
   PageWatch watch(config_, 7);
   std::vector<event_t> events;
   for (double t = 10; t < kEnd_s; t += kStep_s)
@@ -123,7 +123,7 @@ TEST_F(PageWatchTest, NoiseAndSilenceRaiseNothing) {
   EXPECT_NEAR(watch.baseline()[0], 20e3, 100);
 }
 
-TEST_F(PageWatchTest, ABaselineIsOfStiffnessAloneAndCanBeRenewed) {
+TEST_F(PageWatchTest, TheBaselineHoldsOnlyStiffnessAndCanBeRenewed) {
   PageWatch watch(config_, 1);
   EXPECT_TRUE(std::isnan(watch.baseline()[0]));
   const auto learn = [&](double from_s, double scale) {
@@ -149,7 +149,7 @@ TEST_F(PageWatchTest, ABaselineIsOfStiffnessAloneAndCanBeRenewed) {
   EXPECT_GT(again.front().id, softer.front().id);
 }
 
-TEST_F(PageWatchTest, EstimatesOfAnotherBuildingAreIgnored) {
+TEST_F(PageWatchTest, IgnoresEstimatesOfAnotherBuilding) {
   PageWatch watch(config_, 1);
   EXPECT_TRUE(watch.observe(0, estimate_at(10, 5, {1, 2}, 0.005)).empty());
 }

@@ -108,7 +108,7 @@ class StoredHistoryTest : public testing::Test {
   Config config_;
 };
 
-TEST_F(StoredHistoryTest, APageThatWasStartedAnewHasWhatWasBefore) {
+TEST_F(StoredHistoryTest, ARestartedPageShowsEarlierHistory) {
   LiveView page = view();
   restore(page);
   const json history = json::parse(page.history_json());
@@ -133,7 +133,7 @@ TEST_F(StoredHistoryTest, APageThatWasStartedAnewHasWhatWasBefore) {
   EXPECT_NE(seen.find("it changed"), std::string::npos);
 }
 
-TEST_F(StoredHistoryTest, SensorsWhoseClockBeganAnewAreSeen) {
+TEST_F(StoredHistoryTest, ShowsSensorsWhoseClockWasReset) {
   LiveView page = view();
   restore(page);
   accel_t sample{};
@@ -149,7 +149,7 @@ TEST_F(StoredHistoryTest, SensorsWhoseClockBeganAnewAreSeen) {
   EXPECT_LT(json::parse(page.history_json())["silent_s"].get<double>(), 2);
 }
 
-TEST_F(StoredHistoryTest, PeaksAreThoseOfTheStoredMotion) {
+TEST_F(StoredHistoryTest, GivesThePeaksOfTheStoredMotion) {
   std::vector<std::string> notes;
   const StoredHistory stored = stored_history(config_, notes);
   const auto all = static_cast<double>(config_.pipeline.axes.size() * kRate_hz * kSeconds);
@@ -157,7 +157,7 @@ TEST_F(StoredHistoryTest, PeaksAreThoseOfTheStoredMotion) {
   EXPECT_EQ(stored.events.size(), 1u);
 }
 
-TEST_F(StoredHistoryTest, WhatRunNoLongerSaysIsRaisedIsOver) {
+TEST_F(StoredHistoryTest, ClosesEventsThatRunNoLongerRaises) {
   LiveView page = view();
   restore(page);
   service_t service{};
@@ -168,7 +168,7 @@ TEST_F(StoredHistoryTest, WhatRunNoLongerSaysIsRaisedIsOver) {
   EXPECT_TRUE(event_of(joined(page), "answers")["findings"].empty());
 }
 
-TEST_F(StoredHistoryTest, ADatabaseThatIsNoneIsSaidAndHarmless) {
+TEST_F(StoredHistoryTest, ReportsAndSurvivesAForeignDatabase) {
   test::write_file(summary_file(config_.history->directory), "no database at all, but long enough");
   std::vector<std::string> notes;
   const StoredHistory stored = stored_history(config_, notes);

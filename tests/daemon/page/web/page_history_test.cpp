@@ -75,7 +75,7 @@ TEST_F(PageHistoryTest, AWindowThatComesLateFillsItsRow) {
   EXPECT_TRUE(rows[2][5][0].is_null());
 }
 
-TEST_F(PageHistoryTest, IsBoundedWhateverTheBuilding) {
+TEST_F(PageHistoryTest, IsBoundedForAnyBuilding) {
   const std::vector<double> many(2000, 1.0);
   for (std::int64_t i = 0; i < 600; ++i) history_.estimate(estimate_at(1'000'000 * i, many));
   EXPECT_EQ(json::parse(history_.json(0))["rows"].size(), PageHistory::kMaxValues / many.size());
@@ -83,7 +83,7 @@ TEST_F(PageHistoryTest, IsBoundedWhateverTheBuilding) {
   EXPECT_LE(json::parse(history_.json(0))["motion"].size(), 20 * PageHistory::kMotion_s + 1);
 }
 
-TEST_F(PageHistoryTest, TheLastValueAndBoxOfAnElementStay) {
+TEST_F(PageHistoryTest, KeepsTheLastValueAndBoxOfAnElement) {
   window_estimate_t e = estimate_at(5'000'000, {10, 20});
   add_boxes(e);
   history_.estimate(e);
@@ -103,7 +103,7 @@ TEST_F(PageHistoryTest, TheLastValueAndBoxOfAnElementStay) {
 }
 
 /// The estimator knows values of before this process began.
-TEST_F(PageHistoryTest, WhatTheEstimatorHoldsIsTheLastValue) {
+TEST_F(PageHistoryTest, ShowsHeldValuesAsLastValue) {
   window_estimate_t e = estimate_at(9'000'000, {estimator::kNaN, estimator::kNaN});
   e.held = 1;
   e.held_index = {1};
@@ -150,7 +150,7 @@ class Answering : public Served {
   }
 };
 
-TEST_F(Answering, ThePageIsToldThatWindowsHaveComeLate) {
+TEST_F(Answering, TellsThePageOfLateWindows) {
   parameters();
   const std::size_t n = view_parameters();
   send("FRAMEWATCH_ESTIMATE", estimate_at(500'000, std::vector<double>(n, estimator::kNaN)));
@@ -163,7 +163,7 @@ TEST_F(Answering, ThePageIsToldThatWindowsHaveComeLate) {
   EXPECT_EQ(json::parse(view_.history_json())["rows"][0][5][0], 7);
 }
 
-TEST_F(Answering, WhoJoinsLateGetsAnswersFindingsAndHistory) {
+TEST_F(Answering, SendsAnswersFindingsAndHistoryToALateViewer) {
   parameters();
   event_t damage{};
   damage.id = 3;
@@ -212,7 +212,7 @@ TEST_F(Answering, WhoJoinsLateGetsAnswersFindingsAndHistory) {
 }
 
 /// With [watch] the page compares with what `framewatch run` compares with.
-TEST(WatchedPage, TheBaselineIsTheOneOfRun) {
+TEST(WatchedPage, UsesTheBaselineOfRun) {
   const Config config = test::good(std::string(test::kGoodConfig) + "[watch]\n");
   LiveView view(
       config, [](std::int64_t, const std::string&, const std::vector<std::uint8_t>&) {},

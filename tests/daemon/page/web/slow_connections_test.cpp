@@ -201,7 +201,7 @@ class HastyPage : public Served {
   const Meanwhile tended_{[this] { server_.wake(); }};
 };
 
-TEST_F(HastyPage, BytesNowAndThenDoNotKeepARequestOpen) {
+TEST_F(HastyPage, ClosesASlowRequest) {
   const std::string tls("\x16\x03\x01\0\xc8\x01\0\0\xc4\x03\x03", 11), zeros(1000, '\0');
   for (const std::string& begun :
        {std::string(), std::string("G"), std::string("\r\n\r\n\r\n"), std::string(kHalfAHead), tls,
@@ -225,7 +225,7 @@ TEST_F(HastyPage, BytesNowAndThenDoNotKeepARequestOpen) {
   ::close(s);
 }
 
-TEST_F(HastyPage, AViewerThatNeverReadsIsEndedAndTheOthersSeeNothingOfIt) {
+TEST_F(HastyPage, ClosesAViewerThatNeverReadsWithoutDisturbingOthers) {
   const int never = connect_to(server_.port()), reads = connect_to(server_.port());
   for (const int s : {never, reads}) ASSERT_TRUE(say(s, request("GET /events")));
   const std::string large(100'000, 'x');
@@ -250,7 +250,7 @@ bool is_ended(int socket) {
   return ::poll(&at, 1, 0) == 1 && (at.revents & (POLLERR | POLLHUP)) != 0;
 }
 
-TEST_F(HastyPage, AnAnswerReadByteByByteIsEnded) {
+TEST_F(HastyPage, ClosesAViewerThatReadsByteByByte) {
   const int s = connect_to(server_.port());
   ASSERT_TRUE(say(s, request("GET /metrics")));
   char byte = 0;
@@ -276,7 +276,7 @@ class SmallPage : public Served {
   }};
 };
 
-TEST_F(SmallPage, AnswersThatNobodyReadsAreBoundedInAll) {
+TEST_F(SmallPage, BoundsUnreadAnswersInTotal) {
   std::vector<int> sockets;
   for (int i = 0; i < 50; ++i) {
     sockets.push_back(connect_to(server_.port()));

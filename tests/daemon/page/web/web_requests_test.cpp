@@ -79,7 +79,7 @@ std::vector<Case> foreign_requests() {
   };
 }
 
-TEST_F(Served, ForeignRequestsAreRefused) {
+TEST_F(Served, RefusesForeignRequests) {
   for (const Case& c : foreign_requests()) {
     const std::string answer = ask(server_.port(), c.request);
     EXPECT_EQ(status_of(answer), c.status) << c.what << "\n" << answer.substr(0, 300);
@@ -90,7 +90,7 @@ TEST_F(Served, ForeignRequestsAreRefused) {
   EXPECT_EQ(status_of(ask(server_.port(), get("/healthz"))), "200");
 }
 
-TEST_F(Served, NothingHidesBehindARequest) {
+TEST_F(Served, RefusesBytesBehindARequest) {
   // What a proxy takes for the body of the first.
   for (const std::string& first :
        {get("/healthz"), with("GET /healthz", "Connection: keep-alive\r\n"),
@@ -104,7 +104,7 @@ TEST_F(Served, NothingHidesBehindARequest) {
   }
 }
 
-TEST_F(Served, TheHeadOfAPageHasNoBodyAndTheHeadOfTheStreamEnds) {
+TEST_F(Served, AnswersHeadRequestsWithoutABody) {
   for (const char* path : {"/", "/events", "/metrics"}) {
     const std::string answer = ask(server_.port(), with(std::string("HEAD ") + path, ""));
     EXPECT_EQ(status_of(answer), "200") << path;

@@ -17,7 +17,7 @@
 namespace framewatch::daemon {
 namespace web_sessions_test {
 
-TEST(WebSessions, GiveOutReportsAndNothingElse) {
+TEST(WebSessions, ServeOnlyReports) {
   const test::TemporaryDirectory directory;
   for (const char* name : {"2026-11-21T14-03-10_a", "2026-11-21T15-00-00"}) {
     std::filesystem::create_directory(directory.path(name));
@@ -85,7 +85,7 @@ TEST(WebSessions, FollowNoLinks) {
   EXPECT_TRUE(session_document(s.directory.path("link"), "a/session.json"));
 }
 
-TEST(WebSessions, ReadNeitherPipesNorDevicesNorWhatIsHuge) {
+TEST(WebSessions, ReadNoPipesDevicesOrHugeFiles) {
   const SessionsAndASecret s;
   namespace fs = std::filesystem;
   const auto report = [&](const char* name) { return s.sessions + "/" + name + "/report.html"; };
@@ -141,7 +141,7 @@ TEST_F(EventReportsTest, AreListedNewestFirst) {
   EXPECT_EQ(event_reports_json("/nonexistent"), "[]");
 }
 
-TEST_F(EventReportsTest, NothingButTheirPagesAndDataIsGivenOut) {
+TEST_F(EventReportsTest, ServeOnlyTheirPagesAndData) {
   EXPECT_EQ(event_report_document(folder_, "event-20261124T000000Z.html").value().content, "<p>");
   EXPECT_EQ(event_report_document(folder_, "event-20261124T000000Z.json").value().type,
             "application/json");
@@ -171,7 +171,7 @@ class ServedEventReports : public test::Served {
   }
 };
 
-TEST_F(ServedEventReports, ComeWithoutScriptsAndOnlyWhereTheyAreWritten) {
+TEST_F(ServedEventReports, AreServedWithoutScripts) {
   const auto asked = [&](const std::string& path) {
     return test::ask(server_.port(), test::request("GET " + path));
   };
