@@ -37,7 +37,7 @@ TEST(UtcText, ReadsBackItsText) {
     EXPECT_FALSE(read_utc(text)) << text;
 }
 
-TEST(UtcText, HandlesYearsBeyondFourDigits) {
+TEST(UtcText, ClampsYearsToFourDigits) {
   constexpr std::int64_t kFarthest = std::numeric_limits<std::int64_t>::max();
   EXPECT_EQ(utc_text(kFarthest), "9999-12-31T23:59:59.999Z");
   EXPECT_EQ(utc_text(-kFarthest - 1), "0000-01-01T00:00:00Z");

@@ -152,7 +152,7 @@ std::vector<double> every_exponent(bool odd_negative) {
   return out;
 }
 
-TEST_P(AbsurdSamples, BeyondTheBoundChangeNothingAtAll) {
+TEST_P(AbsurdSamples, BeyondTheBoundChangeNothing) {
   std::vector<double> values;
   const SampleBound bound = sample_bound({});
   for (const double value : every_exponent(GetParam()))
@@ -214,7 +214,7 @@ TEST_P(AbsurdSamples, ASecondOfThemLeavesNoTrace) {
 }
 
 /// Stamps of one channel that are off, once or for a second, silence nothing for long.
-TEST_P(AbsurdSamples, StampsOfOneChannelSilenceNothingForLong) {
+TEST_P(AbsurdSamples, StampsOfOneChannelSilenceOthersOnlyBriefly) {
   constexpr int kApart_s = 16, kAxis = 3;
   std::vector<std::pair<double, int>> attacks;  // seconds ahead, samples
   for (const double ahead_s : {0.3, 0.55, 0.8, 1.05, 10.0, 1e9, -0.3, -0.8, -1e9})

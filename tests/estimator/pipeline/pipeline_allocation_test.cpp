@@ -77,7 +77,7 @@ TEST(PipelineAllocation, SamplesAllocateNothing) {
   }
 }
 
-TEST(PipelineAllocation, TuningTheFiltersAnewAllocatesNothing) {
+TEST(PipelineAllocation, RetuningTheFiltersAllocatesNothing) {
   const Structure s = test::table1();
   PipelineConfig config = test::pipeline_config(s);  // guesses its design, far off
   const Watched run = watch(config, test::shaken(s, test::table1_theta(), 100, 25, 0.01));

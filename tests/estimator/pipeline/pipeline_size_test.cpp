@@ -67,7 +67,7 @@ PipelineConfig config_of(const Case& c) {
 
 class PipelineSizeOf : public testing::TestWithParam<Case> {};
 
-TEST_P(PipelineSizeOf, IsWhatAPipelineTakes) {
+TEST_P(PipelineSizeOf, EqualsTheMemoryOfAPipeline) {
 #if !defined(__GLIBC__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer or another C library owns malloc";
 #endif

@@ -93,7 +93,7 @@ TEST(Pipeline, GivesNoValueBeforeItsWarmUp) {
   EXPECT_LT(worst_frame_error(small(), run.estimates.back(), small_theta()), 0.02);
 }
 
-TEST(Pipeline, WindowTimesAreThoseOfItsSamples) {
+TEST(Pipeline, WindowTimesMatchTheirSamples) {
   const PipelineRun run = run_pipeline(small_config(), small_accel());
   for (std::size_t i = 0; i < run.estimates.size(); ++i) {
     const WindowEstimate& e = run.estimates[i];
@@ -176,7 +176,7 @@ TEST(Pipeline, HopOfSeveralRowsGivesTheSameWindowsLessOften) {
   }
 }
 
-TEST(Pipeline, AfterAnInterruptionValuesReturnAtOnceAndAreAsGood) {
+TEST(Pipeline, ValuesReturnAtOnceAfterAnInterruptionAndAreAsGood) {
   const int interrupted_at = 1200;
   const PipelineRun run = run_pipeline(small_config(), small_accel(), [&](int t, int) {
     return t < interrupted_at || t >= interrupted_at + 300;
@@ -210,7 +210,7 @@ TEST(Pipeline, AfterALongInterruptionAValueComesWithinASecondOrTwo) {
   EXPECT_LE(without, kWarmUp + kTriple + kShapes + 10);
 }
 
-TEST(Pipeline, LostChannelTakesItsElementsAloneAndComesBack) {
+TEST(Pipeline, ALostChannelCostsOnlyItsElementsUntilItReturns) {
   const int lost = 5;  // story 2, frame y2
   const int from = 1200, to = 1450;
   const PipelineRun run = run_pipeline(small_config(), small_accel(), [&](int t, int axis) {

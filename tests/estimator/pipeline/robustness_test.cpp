@@ -56,7 +56,7 @@ TEST(RandomBuildings, AreIdentifiedLikeThePapers) {
   }
 }
 
-TEST(PaperMethod, IsFarFromOursOnTheSameMotions) {
+TEST(PaperMethod, IsFarLessExactOnTheSameMotions) {
   constexpr double kTimesWorse = 5;
   const daemon::AccuracyCase c = daemon::accuracy_cases().front();
   const daemon::AccuracyRow row = daemon::study_accuracy(c, 2, daemon::Workers(1));

@@ -79,7 +79,7 @@ TEST(StartTuned, PublishesFromTheFirstFullWindowOn) {
   EXPECT_LT(second.worst, kMaxError);
 }
 
-TEST(StartTuned, WhatWasNotFoundRightIsOnlyWhereItBegins) {
+TEST(StartTuned, UnconfirmedTuningIsOnlyAStart) {
   Tuning start = *run({}).tuning;
   start.found_right = false;
   const Seen seen = run(start);

@@ -87,7 +87,7 @@ class State : public testing::TestWithParam<bool> {
                                         kInstants / kRate_hz, GetParam() ? 0.01 : 0.03);
 };
 
-TEST_P(State, CutAnywhereGoesOnBitByBit) {
+TEST_P(State, ContinuesBitByBitFromAnyInstant) {
   std::vector<Cut> cuts;
   for (int t = 0; t < kInstants - kCompared; t += t < 480 ? 11 : 23)
     cuts.push_back({t, (t * 5) % axes(), {}, 0});
@@ -137,7 +137,7 @@ TEST_P(State, CutAnywhereGoesOnBitByBit) {
   }
 }
 
-TEST_P(State, ReadsBackWhatItWrote) {
+TEST_P(State, ReadsBackItsBytes) {
   Watched first(config_);
   for (int t = 0; t < 500; ++t) push(first, t, 0, axes());
   StateWriter once;
@@ -154,7 +154,7 @@ TEST_P(State, ReadsBackWhatItWrote) {
 INSTANTIATE_TEST_SUITE_P(Noise, State, testing::Bool(),
                          [](const auto& given) { return given.param ? "configured" : "measured"; });
 
-TEST(StateReader, RefusesWhatIsTooShortOrOfAnotherBuilding) {
+TEST(StateReader, RefusesTruncatedAndForeignStates) {
   const PipelineConfig config = test::pipeline_config(test::table1(), kRate_hz);
   Watched one(config);
   StateWriter writer;

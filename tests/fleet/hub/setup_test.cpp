@@ -92,7 +92,7 @@ TEST(Setup, ReportsEachRefusalAndTriesTheOtherParts) {
   EXPECT_NE(out.problems.front().find("insufficient storage"), std::string::npos);
 }
 
-TEST(Setup, ReportsAServerWithoutJetStream) {
+TEST(Setup, ReportsMalformedAnswersOfTheServer) {
   for (const char* answer :
        {"", "[]", "null", R"({"error":5})", R"({"error":{"code":"x"}})", "{"}) {
     const SetupOutcome out = set_up(

@@ -82,7 +82,7 @@ TEST_F(FleetStoreOnServer, StoresARepeatedMessageOnce) {
   EXPECT_EQ(number("SELECT count(*) FROM building"), "2");
 }
 
-TEST_F(FleetStoreOnServer, ReplacesAPeriodOnlyByALongerOne) {
+TEST_F(FleetStoreOnServer, ReplacesAPeriodOnlyByOneWithMoreWindows) {
   FleetStore store;
   ASSERT_EQ(store.open(where_), "");
   FleetBatch batch;

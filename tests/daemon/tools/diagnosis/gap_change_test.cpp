@@ -60,15 +60,15 @@ void expect_named(double change_s, const std::string& parameter) {
       << found.front().message;
 }
 
-TEST(GapChange, WhileTheModelIsLearnedIsNotLearnedAndIsNamed) {
+TEST(GapChange, NamesAChangeDuringLearning) {
   expect_named(36, "kx_1_y2");
 }
 
-TEST(GapChange, AfterTheModelWasLearnedIsNamed) {
+TEST(GapChange, NamesAChangeAfterLearning) {
   expect_named(95, "ky_2_x1");
 }
 
-TEST(GapChange, ThatComesTooSoonToLearnFromIsTheBuildingThatIsLearned) {
+TEST(GapChange, LearnsTheChangedBuildingAfterAnEarlyChange) {
   EXPECT_TRUE(gaps(12, "kx_1_y2").empty());
 }
 

@@ -122,7 +122,7 @@ double late_gap(const std::vector<framewatch::gap_t>& gaps) {
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-TEST_F(GapLoop, IsClosedLive) {
+TEST_F(GapLoop, IsFoundAndExplainedLive) {
   const Config building = config();
   drivers::LcmProvider lcm("memq://");
   Heard heard;
@@ -185,7 +185,7 @@ TEST_F(GapLoop, IsClosedLive) {
   EXPECT_EQ(heard.events.back().id, raised.id);
 }
 
-TEST_F(GapLoop, ReplayCutInTwoGivesTheBytesOfTheUncutOne) {
+TEST_F(GapLoop, AReplayInTwoPartsGivesTheBytesOfOne) {
   const auto run = [&](const std::string& out, ReplaySpan span, const std::string& load,
                        const std::string& save) {
     ReplayArguments a;
@@ -206,7 +206,7 @@ TEST_F(GapLoop, ReplayCutInTwoGivesTheBytesOfTheUncutOne) {
               test::read_file(path("first.lcmlog")) + test::read_file(path("second.lcmlog")));
 }
 
-TEST_F(GapLoop, RefusesWhatIsNoModelOfTheBuilding) {
+TEST_F(GapLoop, RefusesAModelOfAnotherBuilding) {
   const std::string building = test::read_file(path("building.toml"));
   const auto refused = [&](const std::string& text) {
     test::write_file(path("model.toml"), text);
@@ -223,7 +223,7 @@ TEST_F(GapLoop, RefusesWhatIsNoModelOfTheBuilding) {
   EXPECT_NE(refused("nonsense").find("model.toml:1"), std::string::npos);
 }
 
-TEST_F(GapLoop, DiagnoseOfAnEventSaysWhatIsMissing) {
+TEST_F(GapLoop, DiagnoseOfAnEventNamesTheMissingEffect) {
   DiagnoseArguments d;
   d.config = path("building.toml");
   d.event = "17";

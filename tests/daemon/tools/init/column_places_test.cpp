@@ -31,7 +31,7 @@ std::string matched(const estimator::Structure& s, const std::vector<std::string
   return out + (found.ambiguous ? "? " + titles[*found.ambiguous] : "");
 }
 
-TEST(ColumnPlaces, OneSensorAFloorAndDirection) {
+TEST(ColumnPlaces, OneSensorPerFloorAndDirection) {
   const auto s = building(2, 1, 1);
   EXPECT_EQ(matched(s, {"base_x", "base_y", "floor1_x", "floor1_y", "roof_x", "roof_y"}),
             "0:x=base_x 0:y=base_y 1:y1=floor1_x 1:x1=floor1_y 2:y1=roof_x 2:x1=roof_y ");
@@ -52,7 +52,7 @@ TEST(ColumnPlaces, APlaneBuildingNeedsNoDirection) {
             "0:x=base 1:y1=A1Y1 2:y1=A2Y1 3:y1=A3Y1 ");
 }
 
-TEST(ColumnPlaces, ALetterWithANumberIsAFrameOrADirection) {
+TEST(ColumnPlaces, ALetterWithANumberMeansAFrameOrADirection) {
   const std::vector<std::string> titles{"A0X", "A0Y", "A1Y1", "A1Y2", "A1X1", "A1X2"};
   const auto s = building(1, 2, 2);
   EXPECT_EQ(matched(s, {"base_x", "base_y", "A1Y1", "A1Y2", "A1X1", "A1X2"}),
@@ -70,7 +70,7 @@ TEST(ColumnPlaces, ALetterWithANumberIsAFrameOrADirection) {
   EXPECT_EQ(match_columns(s, titles, {}).column_of_place[2], std::nullopt);
 }
 
-TEST(ColumnPlaces, TheBuildingCanDecide) {
+TEST(ColumnPlaces, TheBuildingDecidesAmbiguousNames) {
   // Three frames along x, two along y: y3 is no third accelerometer along y.
   EXPECT_EQ(matched(building(1, 3, 2), {"base_x", "base_y", "y1 story 1", "y2 story 1",
                                         "y3 story 1", "x1 story 1", "x2 story 1"}),
@@ -81,7 +81,7 @@ TEST(ColumnPlaces, TheBuildingCanDecide) {
       "0:x=base_x 0:y=base_y 1:y1=F1-X1 1:y2=F1-X2 1:y3=F1-X3 1:x1=F1-Y1 1:x2=F1-Y2 ");
 }
 
-TEST(ColumnPlaces, WhatSaysNoPlaceIsLeft) {
+TEST(ColumnPlaces, LeavesNamesWithoutAPlace) {
   const auto s = building(1, 1, 0);
   // Numbers of sensors, and Japan's 1F, which is the ground floor.
   for (const char* title : {"acc1", "ch1", "1", "1F", "sensor 1", "A1", "temperature", "y1", "z",
@@ -91,7 +91,7 @@ TEST(ColumnPlaces, WhatSaysNoPlaceIsLeft) {
   EXPECT_EQ(matched(s, {"base", "ground", "roof"}), "0:x=- 1:y1=roof ");
 }
 
-TEST(ColumnPlaces, PlacesAreReadAsTheyAreWritten) {
+TEST(ColumnPlaces, ReadsBackWrittenPlaces) {
   const auto s = building(3, 2, 1);
   for (const Place& place : places_of(s)) EXPECT_EQ(parse_place(s, place_option(s, place)), place);
   EXPECT_EQ(parse_place(s, "base:x"), (Place{0, -1, estimator::Direction::x}));

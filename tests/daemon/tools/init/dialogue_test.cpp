@@ -48,7 +48,7 @@ TEST(InitDialogue, DefaultsAndAnswersMakeABuilding) {
   EXPECT_NE(person.said.find("Enter writes building.toml"), std::string::npos);
 }
 
-TEST(InitDialogue, AWrongAnswerIsAskedAgainAndAnyCanBeChanged) {
+TEST(InitDialogue, AsksAgainAfterAWrongAnswerAndLetsEveryAnswerChange) {
   Person person;
   const auto plan =
       person.answer({"none", "lcm", "", "three", "3", "x", "", "3.5,3", "4,3,3", "18 t", "", "",
@@ -63,7 +63,7 @@ TEST(InitDialogue, AWrongAnswerIsAskedAgainAndAnyCanBeChanged) {
       << person.said;
 }
 
-TEST(InitDialogue, BackAsksTheQuestionBefore) {
+TEST(InitDialogue, BackReturnsToThePreviousQuestion) {
   Person person;
   const auto plan = person.answer({"back", "", "can", "back", "lcm", "", "3", "back", "2", "x", "",
                                    "3", "900", "none", "200", ""});
@@ -73,14 +73,14 @@ TEST(InitDialogue, BackAsksTheQuestionBefore) {
   EXPECT_NE(person.said.find("This is the first question."), std::string::npos);
 }
 
-TEST(InitDialogue, QuittingOrTheEndOfInputLeavesNothing) {
+TEST(InitDialogue, QuitOrTheEndOfInputWritesNothing) {
   Person person;
   EXPECT_FALSE(person.answer({"", "lcm", "quit"}));
   EXPECT_FALSE(person.answer({"", "lcm"}));
   EXPECT_FALSE(person.answer({"", "lcm", "", "3", "x", "", "3.5", "18 t", "", "", "quit"}));
 }
 
-TEST(InitDialogue, OnlyWhatOptionsDoNotSayIsAsked) {
+TEST(InitDialogue, AsksOnlyWhatOptionsDoNotAnswer) {
   Person person;
   InitAnswers answers;
   answers.by_option = {{"record", "none"}, {"live", "none"},  {"building", "b"},
@@ -90,7 +90,7 @@ TEST(InitDialogue, OnlyWhatOptionsDoNotSayIsAsked) {
   EXPECT_EQ(person.said.find("stories does it have"), std::string::npos) << person.said;
 }
 
-TEST(InitDialogue, ColumnsThatSayNoPlaceAreAskedFor) {
+TEST(InitDialogue, AsksForColumnsWithoutAPlace) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");
   test::write_file(record, "time_s,base,acc2,acc1,spare\n0,0,0,0,0\n0.005,0,0,0,0\n");
@@ -117,7 +117,7 @@ TEST(InitDialogue, ColumnsThatSayNoPlaceAreAskedFor) {
   EXPECT_EQ(changed->channels[2].column.name, "acc1");
 }
 
-TEST(InitDialogue, AWrongChannelTakesNoOtherWithIt) {
+TEST(InitDialogue, AWrongChannelKeepsTheOthers) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");
   test::write_file(record, "time_s,a,b\n0,0,0\n0.005,0,0\n");
@@ -133,7 +133,7 @@ TEST(InitDialogue, AWrongChannelTakesNoOtherWithIt) {
   EXPECT_EQ(plan->channels[1].column.name, "b");
 }
 
-TEST(InitDialogue, ACommaThatCanBeReadInTwoWaysIsAsked) {
+TEST(InitDialogue, AsksAboutAnAmbiguousComma) {
   Person person;
   InitAnswers answers;
   answers.by_option = {{"record", "none"}, {"live", "lcm"},     {"building", "b"},
@@ -145,7 +145,7 @@ TEST(InitDialogue, ACommaThatCanBeReadInTwoWaysIsAsked) {
   EXPECT_EQ(plan->structure.story_height, (std::vector<double>{3, 5}));
 }
 
-TEST(InitDialogue, ARecordThatDoesNotSayItsUnitIsAskedForIt) {
+TEST(InitDialogue, AsksForTheUnitOfARecord) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");
   test::write_file(record, "Time;base_x;roof_x\n0;0;0\n0.01;0;0\n");
@@ -157,7 +157,7 @@ TEST(InitDialogue, ARecordThatDoesNotSayItsUnitIsAskedForIt) {
   EXPECT_EQ(plan->record, record + " --unit g");
 }
 
-TEST(InitDialogue, TitlesOfTwoReadingsAreAskedAbout) {
+TEST(InitDialogue, AsksAboutAmbiguousTitles) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");
   test::write_file(record,

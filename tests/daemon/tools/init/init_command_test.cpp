@@ -21,7 +21,7 @@ class InitCommand : public testing::Test {
 constexpr const char* kHouse =
     "--live lcm --stories 2 --bays 1x1 --span-x 6 --span-y 4 --heights 3 --mass 300kg/m2";
 
-TEST_F(InitCommand, WithoutATerminalAllThatIsMissingIsTold) {
+TEST_F(InitCommand, ReportsAllMissingAnswersWithoutATerminal) {
   const ShellResult said = shell("$F init --stories 2");
   EXPECT_EQ(said.status, kBadInput);
   for (const char* option : {"--live", "--bays", "--span-x", "--span-y", "--heights", "--mass"})
@@ -46,7 +46,7 @@ TEST_F(InitCommand, WritesWhatCheckAccepts) {
 }
 
 /// `script` gives it a terminal.
-TEST_F(InitCommand, OnATerminalItAsks) {
+TEST_F(InitCommand, AsksOnATerminal) {
   const ShellResult said = shell(
       "printf 'none\\nlcm\\n\\n2\\nx\\n\\n3.5\\n18 t\\n\\n\\n\\n' | "
       "timeout 60 script -qec \"$F init\" /dev/null");
@@ -61,7 +61,7 @@ TEST_F(InitCommand, OnATerminalItAsks) {
   EXPECT_EQ(shell("ls b.toml*").out, "");
 }
 
-TEST_F(InitCommand, NeverWritesOverAFileUnlessForced) {
+TEST_F(InitCommand, OverwritesAFileOnlyIfForced) {
   test::write_file(directory_.path("building.toml"), "mine\n");
   const ShellResult said = shell(std::string("$F init ") + kHouse);
   EXPECT_EQ(said.status, kBadInput);
@@ -71,13 +71,13 @@ TEST_F(InitCommand, NeverWritesOverAFileUnlessForced) {
   EXPECT_EQ(shell("$F check building.toml").status, 0);
 }
 
-TEST_F(InitCommand, StandardOutputTakesTheConfigurationAlone) {
+TEST_F(InitCommand, WritesOnlyTheConfigurationToStandardOutput) {
   const ShellResult said = shell(std::string("$F init --out - ") + kHouse + " | $F check -");
   EXPECT_EQ(said.status, 0) << said.err;
   EXPECT_EQ(shell(std::string("$F init --out - --quiet ") + kHouse).err, "");
 }
 
-TEST_F(InitCommand, WhatIsImplausibleIsToldAtOnce) {
+TEST_F(InitCommand, ReportsImplausibleValuesAtOnce) {
   const ShellResult said = shell(
       "$F init --live lcm --stories 2 --bays 1x1 --span-x 6 --span-y 4 "
       "--heights 400 --mass 7");
@@ -113,7 +113,7 @@ TEST_F(InitCommand, ColumnsAreNeverGuessed) {
   EXPECT_NE(few.err.find("this building needs 5 channels"), std::string::npos) << few.err;
 }
 
-TEST_F(InitCommand, SignalsOfACanBus) {
+TEST_F(InitCommand, ReadsSignalsOfACanBus) {
   test::write_file(directory_.path("bus.dbc"),
                    "VERSION \"\"\nBU_: N\n"
                    "BO_ 1 Base: 2 N\n SG_ X : 0|16@1- (0.001,0) [0|0] \"g\" N\n"

@@ -91,7 +91,7 @@ class NewUsersWay : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(NewUsersWay, FromTheirRecordToAPlotOfTheirStiffnesses) {
+TEST_F(NewUsersWay, LeadsFromARecordToAPlotOfStiffnesses) {
   log_as("s/base-\\([xy]\\)/base_\\1/g; s/F\\([12]\\)-\\([XY][12]\\)/story \\1 frame \\L\\2/g");
   ASSERT_TRUE(test::read_file(directory_.path("logger.csv"))
                   .starts_with("Time;base_x [g];base_y [g];story 1 frame y1 [g];"));
@@ -114,7 +114,7 @@ TEST_F(NewUsersWay, FromTheirRecordToAPlotOfTheirStiffnesses) {
     EXPECT_NEAR(mean(name), stiffness, kStiffnessError * stiffness) << name;
 }
 
-TEST_F(NewUsersWay, TitlesOfTwoReadingsAreNotGuessed) {
+TEST_F(NewUsersWay, DoesNotGuessAmbiguousTitles) {
   log_as("s/base-\\([xy]\\)/base_\\1/g; s/F\\([12]\\)-\\([XY][12]\\)/A\\1\\2/g");
   const std::string init = std::string("$F init --record logger.csv ") + kShape;
   const test::ShellResult asked = shell(init);
@@ -127,7 +127,7 @@ TEST_F(NewUsersWay, TitlesOfTwoReadingsAreNotGuessed) {
   check_replay_report();
 }
 
-TEST_F(NewUsersWay, WhatTheRecordDoesNotSayIsGivenToReplayToo) {
+TEST_F(NewUsersWay, PassesRecordOptionsToReplay) {
   log_as("s/base-\\([xy]\\)/base_\\1/g; s/F\\([12]\\)-\\([XY][12]\\)/story \\1 frame \\L\\2/g");
   ASSERT_EQ(shell("sed -i '1s/ \\[g\\]//g' logger.csv").status, 0);
   const std::string init = std::string("$F init --record logger.csv ") + kShape;

@@ -25,7 +25,7 @@ ChannelColumn column(const char* place, double azimuth_deg) {
   return out;
 }
 
-TEST(StationLayout, AxesAreThoseOfMostChannelsAndPlacesAreTurnedWithThem) {
+TEST(StationLayout, TakesTheAxesOfMostChannelsAndTurnsPlacesWithThem) {
   const std::vector<ChannelColumn> columns = {
       column("Ground floor W side", 20), column("Ground floor", 110), column("Roof E side", 200),
       column("Roof", 110), column("Free field", 0)};
@@ -51,7 +51,7 @@ TEST(StationLayout, AxesAreThoseOfMostChannelsAndPlacesAreTurnedWithThem) {
   EXPECT_EQ(station_place(*reading, columns, 4, plan, why)->why_unused, "not in the building");
 }
 
-TEST(StationLayout, OffsetsAndCoordinatesArePlacesInMetres) {
+TEST(StationLayout, ReadsOffsetsAndCoordinatesAsPlacesInMeters) {
   std::vector<ChannelColumn> columns = {column("Ground floor", 0), column("Roof E side", 0)};
   columns[0].header.north_m = -5;
   columns[0].header.east_m = 2;
@@ -77,7 +77,7 @@ TEST(StationLayout, OffsetsAndCoordinatesArePlacesInMetres) {
       << "no building is so long";
 }
 
-TEST(StationLayout, WhatHeadersDoNotSayIsAsked) {
+TEST(StationLayout, AsksForDataThatHeadersLack) {
   std::vector<ChannelColumn> columns = {column("Ground floor", 0), column("somewhere", 0),
                                         column("5th floor", 0), column("Roof", 0)};
   columns[3].header.azimuth_deg.reset();
@@ -149,7 +149,7 @@ TEST_F(StationInit, WritesWhatCheckAccepts) {
             0);
 }
 
-TEST_F(StationInit, AsksForWhatIsMissingByName) {
+TEST_F(StationInit, AsksForMissingPlacesByChannelName) {
   station_file(1, "Ground floor", "180");
   station_file(3, "somewhere W", "180");
   station_file(5, "Roof E side", "180");
@@ -174,7 +174,7 @@ TEST_F(StationInit, AsksForWhatIsMissingByName) {
 }
 
 /// The station of 53 channels whose configuration configs/atwood_np8040.toml was written by hand.
-TEST_F(StationInit, OfTheAtwoodBuildingIsAsWrittenByHand) {
+TEST_F(StationInit, MatchesTheHandWrittenAtwoodBuilding) {
   FRAMEWATCH_DATA_OR_SKIP(folder, "atwood_np8040_anchorage2018");
   const ShellResult said =
       shell(fmt::format("$F init --record {}/*.V1c.gz --stories 20 --plan 39.6x39.6 --heights 4 "

@@ -38,14 +38,14 @@ class Reproduce : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(Reproduce, SameBytesWhateverTheThreads) {
+TEST_F(Reproduce, GivesTheSameBytesOnAnyNumberOfThreads) {
   ASSERT_EQ(reproduced("table1", "one", 2, 1).exit_code, 0);
   ASSERT_EQ(reproduced("table1", "two", 2, 3).exit_code, 0);
   EXPECT_EQ(report("one"), report("two"));
   EXPECT_FALSE(std::filesystem::exists(directory_.path("one") + "/accuracy.md"));
 }
 
-TEST_F(Reproduce, OneCaseIsThatCaseOnly) {
+TEST_F(Reproduce, RunsOnlyTheRequestedCase) {
   ASSERT_EQ(reproduced("table-test", "out").exit_code, 0);
   const std::string page = report("out");
   EXPECT_NE(page.find("Figure 10"), std::string::npos);
@@ -56,7 +56,7 @@ TEST_F(Reproduce, OneCaseIsThatCaseOnly) {
     EXPECT_EQ(page.find(part), std::string::npos) << part;
 }
 
-TEST_F(Reproduce, SaysWhenThePapersMotionsAreAbsent) {
+TEST_F(Reproduce, ReportsMissingMotionsOfThePaper) {
   const Outcome o = reproduced("denoise", "out");
   ASSERT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("FRAMEWATCH_DATA"), std::string::npos);
@@ -66,14 +66,14 @@ TEST_F(Reproduce, SaysWhenThePapersMotionsAreAbsent) {
   EXPECT_NE(page.find("Kanai-Tajimi motion"), std::string::npos);
 }
 
-TEST_F(Reproduce, UnknownCaseWritesNothing) {
+TEST_F(Reproduce, WritesNothingForAnUnknownCase) {
   const Outcome o = reproduced("table3", "out");
   EXPECT_EQ(o.exit_code, 2);
   EXPECT_NE(o.err.find("table2c"), std::string::npos);
   EXPECT_TRUE(directory_.names().empty());
 }
 
-TEST_F(Reproduce, AFileInTheWayIsRefused) {
+TEST_F(Reproduce, RefusesToOverwriteAFile) {
   test::write_file(directory_.path("out"), "mine");
   EXPECT_EQ(reproduced("table1", "out").exit_code, 2);
   EXPECT_EQ(test::read_file(directory_.path("out")), "mine");
@@ -102,7 +102,7 @@ Reproduction with_broken_k() {
   return all;
 }
 
-TEST(Promises, JudgeWhatTheyAreGiven) {
+TEST(Promises, AreJudgedByTheirNumbers) {
   Reproduction all = with_broken_k();
   int broken = 0;
   for (const Promise& promise : promises(all)) {
@@ -116,7 +116,7 @@ TEST(Promises, JudgeWhatTheyAreGiven) {
   EXPECT_TRUE(promises(all).empty());
 }
 
-TEST(AccuracyDocument, HasTheNumbersAndWhatIsNotKept) {
+TEST(AccuracyDocument, HasTheNumbersAndTheBrokenPromises) {
   Reproduction all = with_broken_k();
   all.robustness.emplace();
   all.robustness->sweeps.push_back({"fading", {{0.003, {100, 0, 0, 0}, {50, 0, 0, 0}, {}}}});

@@ -53,7 +53,7 @@ std::vector<BusFrame> eventful(const daemon::Config& config, unsigned seed) {
 
 class CanState : public testing::TestWithParam<const char*> {};
 
-TEST_P(CanState, GoingOnFromAStateGivesTheSamplesOfTheUncutRun) {
+TEST_P(CanState, ContinuesWithTheSamplesOfAnUninterruptedRun) {
   daemon::Config config = test::can_example(GetParam());
   if (config.can.nodes[0].timing == CanTiming::sync) config.can.buses[0].sync_overflow = 0;
   const std::vector<BusFrame> frames = eventful(config, 47);
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, CanState,
                                          "tower", "epson_m_a552"),
                          [](const auto& param) { return std::string(param.param); });
 
-TEST(CanState, AStateCutShortIsRefused) {
+TEST(CanState, RefusesATruncatedState) {
   const daemon::Config config = test::can_example("tower");
   CanIntake intake(config.can, [](const estimator::AccelSample&) {});
   for (const BusFrame& f : test::can_traffic(config, 100)) intake.frame(f.bus, f.frame);

@@ -63,7 +63,7 @@ TEST(GoldenReplay, FiveRunsGiveTheSameBytesWithAndWithoutATerminal) {
   }
 }
 
-TEST(GoldenReplay, ItsRecipeGivesTheGoldenLog) {
+TEST(GoldenReplay, TheRecipeGivesTheGoldenLog) {
   const TemporaryDirectory directory;
   const std::string made = directory.path("made.lcmlog"), golden = directory.path("golden.lcmlog");
   ASSERT_EQ(std::system((std::string(FRAMEWATCH_PROGRAM) + " simulate " + kGolden +

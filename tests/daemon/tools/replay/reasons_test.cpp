@@ -57,7 +57,7 @@ class Reasons : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(Reasons, AReversedChannelIsNotQuiet) {
+TEST_F(Reasons, DoNotCallAReversedChannelQuiet) {
   const nlohmann::json found =
       of([](const std::string& cell) { return cell[0] == '-' ? cell.substr(1) : "-" + cell; });
   const nlohmann::json& own = found["kx_1_y1"];
@@ -66,7 +66,7 @@ TEST_F(Reasons, AReversedChannelIsNotQuiet) {
   EXPECT_GT(own["too uncertain"], 500) << own;
 }
 
-TEST_F(Reasons, ADeadChannelIsTheReasonOnItsWholeFlexibleFloor) {
+TEST_F(Reasons, NameADeadChannelOnItsWholeFlexibleFloor) {
   const nlohmann::json found = of([](const std::string&) { return std::string("0"); });
   for (const char* name : {"kx_1_y1", "kx_1_y2", "ky_1_x1", "cx_1_y2", "Gk_1_x1y1"}) {
     EXPECT_LT(found[name]["warming up"], kWarmUp) << name << found[name];

@@ -78,7 +78,7 @@ TEST_F(RefineCommand, PrintsATable) {
   EXPECT_NE(o.out.find("Cramer-Rao bound"), std::string::npos) << o.out;
 }
 
-TEST_F(RefineCommand, SaysWhyItCannot) {
+TEST_F(RefineCommand, ReportsWhyItCannotRefine) {
   const std::string rec = record("rec.csv");
   EXPECT_EQ(refined({kConfig, {rec}, 6, 6.05, true, false}).exit_code, 1);
   const Outcome beyond = refined({kConfig, {rec}, 600, 605, true, false});

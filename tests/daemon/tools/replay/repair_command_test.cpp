@@ -98,7 +98,7 @@ TEST(Repair, LeavesAnIntactLogAlone) {
   EXPECT_TRUE(r.report["out"].is_null());
 }
 
-TEST(Repair, EveryDamageOfTheTableCostsNoMoreThanItHits) {
+TEST(Repair, EveryDamageCostsOnlyTheEventsItHits) {
   const std::string good = ten_events();
   struct Case {
     const char* name;
@@ -201,7 +201,7 @@ TEST(Repair, ACraftedLogTakesSeconds) {
   EXPECT_GT(r.report["damage"].back()["places"], 10'000);
 }
 
-TEST(Repair, CheckWritesNothingAndSaysSo) {
+TEST(Repair, CheckReportsAndWritesNothing) {
   const TemporaryDirectory directory;
   const std::string good = ten_events();
   write_file(directory.path("cut"), good.substr(0, good.size() - 1));
@@ -214,7 +214,7 @@ TEST(Repair, CheckWritesNothingAndSaysSo) {
   EXPECT_EQ(directory.names().size(), 1u);
 }
 
-TEST(Repair, RefusesWhatIsNoLog) {
+TEST(Repair, RefusesFilesThatAreNotALog) {
   const TemporaryDirectory directory;
   write_file(directory.path("text"), std::string(5000, 'Z'));
   testing::internal::CaptureStderr();

@@ -76,7 +76,7 @@ TEST(SessionVerdict, NamesTheFrameItsLossAndTheTime) {
       << verdict_sentence(r);
 }
 
-TEST(SessionVerdict, IsTheFirstThingOnThePageAndEventsComeBeforeFigures) {
+TEST(SessionVerdict, ComesFirstAndEventsComeBeforeFigures) {
   const std::string html = session_report_html(changed().report);
   const std::size_t body = html.find("<body>"), verdict = html.find("Frame y2 of story 1 has lost");
   ASSERT_NE(verdict, std::string::npos);
@@ -85,7 +85,7 @@ TEST(SessionVerdict, IsTheFirstThingOnThePageAndEventsComeBeforeFigures) {
   EXPECT_EQ(html.find("furthest from its reference"), std::string::npos);
 }
 
-TEST(SessionVerdict, NothingMixesBeforeAndAfter) {
+TEST(SessionVerdict, KeepsValuesBeforeAndAfterApart) {
   const SessionReport& r = changed().report;
   ASSERT_EQ(r.compared.size(), 2u);
   EXPECT_FALSE(r.compared[0].after);
@@ -157,7 +157,7 @@ SessionReport grown(double weaker) {
   return r;
 }
 
-TEST(SessionVerdict, WhatGrowsWhileTheMotionDiesIsRecoveryAndNoHeadline) {
+TEST(SessionVerdict, CallsGrowthInDecayingMotionRecovery) {
   SessionReport r = grown(3);
   ASSERT_FALSE(r.recoveries.empty());
   EXPECT_TRUE(r.changes.empty());
@@ -169,7 +169,7 @@ TEST(SessionVerdict, WhatGrowsWhileTheMotionDiesIsRecoveryAndNoHeadline) {
   EXPECT_NE(verdict_sentence(r).find("only weaker motion"), std::string::npos);
 }
 
-TEST(SessionVerdict, WhetherTheMotionDiesIsSeenInTheMotionWhereThereIsSome) {
+TEST(SessionVerdict, SeesDecayInTheMotionIfAvailable) {
   SessionReport r = grown(1);
   std::vector<ElementChange> steady = r.changes, dying = r.changes;
   EXPECT_TRUE(take_recoveries(r.estimates, &*r.motion, steady).empty());
@@ -179,14 +179,14 @@ TEST(SessionVerdict, WhetherTheMotionDiesIsSeenInTheMotionWhereThereIsSome) {
   EXPECT_TRUE(dying.empty());
 }
 
-TEST(SessionVerdict, WhatGrowsUnderMotionAsStrongIsAChange) {
+TEST(SessionVerdict, CallsGrowthUnderEqualMotionAChange) {
   const SessionReport r = grown(1);
   EXPECT_TRUE(r.recoveries.empty());
   EXPECT_NE(verdict_sentence(r).find("has become stiffer by 1"), std::string::npos)
       << verdict_sentence(r);
 }
 
-TEST(SessionVerdict, OfABuildingThatStaysTheSameSaysSo) {
+TEST(SessionVerdict, SaysThatABuildingStayedTheSame) {
   const Session same(false);
   EXPECT_TRUE(same.report.changes.empty());
   EXPECT_EQ(verdict_sentence(same.report).rfind("The building has not changed: ", 0), 0u)
@@ -194,7 +194,7 @@ TEST(SessionVerdict, OfABuildingThatStaysTheSameSaysSo) {
   EXPECT_EQ(same.report.compared.size(), 1u);
 }
 
-TEST(SessionVerdict, OfTooShortASessionDoesNotPretend) {
+TEST(SessionVerdict, GivesNoVerdictOnATooShortSession) {
   SessionReport r = changed().report;
   r.changes.clear();
   r.judged.clear();
@@ -202,7 +202,7 @@ TEST(SessionVerdict, OfTooShortASessionDoesNotPretend) {
             std::string::npos);
 }
 
-TEST(SessionVerdict, KnowsAChangeThatOnlyAnEventTells) {
+TEST(SessionVerdict, ReportsAChangeKnownOnlyFromAnEvent) {
   SessionReport r = changed().report;
   event_t event{};
   event.kind = "stiffness_change";
@@ -237,7 +237,7 @@ SessionReport tall(std::int32_t word, double bending_nmprad) {
   return r;
 }
 
-TEST(SessionVerdict, SaysOfATallBuildingWhetherItsFramesBend) {
+TEST(SessionVerdict, SaysWhetherTheFramesOfATallBuildingBend) {
   EXPECT_NE(bending_sentence(tall(3, 0)).find("set krx_nmprad"), std::string::npos);
   EXPECT_NE(bending_sentence(tall(2, 0)).find("set krx_nmprad"), std::string::npos);
   EXPECT_NE(bending_sentence(tall(1, 0)).find("fits without"), std::string::npos);

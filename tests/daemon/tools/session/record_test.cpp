@@ -82,7 +82,7 @@ std::int64_t missing_in(const std::vector<std::int64_t>& times) {
   return missing;
 }
 
-TEST(Record, TheEstimatorsDeathCostsNoSample) {
+TEST(Record, AnEstimatorCrashCostsNoSample) {
   std::string why;
   if (no_multicast(why)) GTEST_SKIP() << why;
   const LiveSession live({"--no-check", "--seconds", "14"},
@@ -96,7 +96,7 @@ TEST(Record, TheEstimatorsDeathCostsNoSample) {
   EXPECT_TRUE(fs::exists(live.folder + "/report.html"));
 }
 
-TEST(Record, ARecorderThatIsKilledLeavesAllButTheLastSecond) {
+TEST(Record, AKilledRecorderLosesAtMostASecond) {
   std::string why;
   if (no_multicast(why)) GTEST_SKIP() << why;
   std::int64_t killed_us = 0;
@@ -153,7 +153,7 @@ TEST(Record, AnswersToCommandsFromAnotherTerminal) {
   ::unsetenv("XDG_RUNTIME_DIR");
 }
 
-TEST(Record, RefusesWhatCannotBe) {
+TEST(Record, RefusesImpossibleRequests) {
   RecordArguments a;
   a.config = "/nonexistent.toml";
   EXPECT_EQ(record(a), 2);

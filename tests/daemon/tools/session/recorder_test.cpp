@@ -34,7 +34,7 @@ double at_rest(double t) {
   return 1e-3 * std::sin(50 * t);
 }
 
-TEST(Recorder, ATriggerBringsTheSecondsBeforeItAndEndsAtItsLength) {
+TEST(Recorder, ATriggerRecordsTheSecondsBeforeItAndEndsAtItsLength) {
   test::RecorderBench b;
   b.play(0, 4, at_rest);
   ASSERT_TRUE(b.recorder.checked());
@@ -69,7 +69,7 @@ TEST(Recorder, ATriggerBringsTheSecondsBeforeItAndEndsAtItsLength) {
   EXPECT_LT(session->check[0].peak, 0.01);
 }
 
-TEST(Recorder, ATemperatureStandsAmongTheSamples) {
+TEST(Recorder, StoresATemperatureAmongTheSamples) {
   test::RecorderBench b;
   b.config.watch.emplace().temperature_channel = "OUTSIDE";
   const auto channels = b.recorder.channels();
@@ -94,7 +94,7 @@ TEST(Recorder, ATemperatureStandsAmongTheSamples) {
   EXPECT_EQ(after, 1000);
 }
 
-TEST(Recorder, CommandsAreObeyedOnceAndRefusedWithAReason) {
+TEST(Recorder, ObeysCommandsOnceAndRefusesWithAReason) {
   test::RecorderBench b;
   b.play(0, 4, at_rest);
   session_command_t c{};

@@ -43,7 +43,7 @@ std::string recorded(test::RecorderBench& b, bool estimates) {
   return b.ended.at(0);
 }
 
-TEST(FinishSession, StagesReportAndOtherFormats) {
+TEST(FinishSession, WritesReportAndOtherFormatsInStages) {
   test::RecorderBench b;
   const std::string folder = recorded(b, true);
   EXPECT_EQ(finish_session({test::table_config(), folder, "", true, true, true, true, true}), 0);
@@ -68,7 +68,7 @@ TEST(FinishSession, StagesReportAndOtherFormats) {
   EXPECT_EQ(samples, test::times_of(folder + "/raw.lcmlog").size());
 }
 
-TEST(FinishSession, MissingEstimatesAreMadeAgain) {
+TEST(FinishSession, ComputesMissingEstimates) {
   test::RecorderBench b;
   const std::string folder = recorded(b, false);
   EXPECT_EQ(finish_session({test::table_config(), folder, "", false, false, false, true, true}), 0);
@@ -78,7 +78,7 @@ TEST(FinishSession, MissingEstimatesAreMadeAgain) {
             fs::file_size(folder + "/estimates-replayed.lcmlog"));
 }
 
-TEST(FinishSession, AReportThatCannotBeWrittenCostsNoLog) {
+TEST(FinishSession, KeepsTheLogIfTheReportFails) {
   test::RecorderBench b;
   const std::string folder = recorded(b, true);
   const std::string raw = test::read_file(folder + "/raw.lcmlog");
@@ -100,7 +100,7 @@ TEST(FinishSession, AReportThatCannotBeWrittenCostsNoLog) {
   EXPECT_EQ(again->files, (std::vector<std::string>{"estimates.lcmlog", "raw.lcmlog"}));
 }
 
-TEST(SessionFile, ReadsWhatItWritesAndRefusesWhatIsNone) {
+TEST(SessionFile, ReadsBackItsTextAndRefusesOthers) {
   SessionFile s;
   s.state = "recorded";
   s.request = {"a \"test\"\n", "me", "ü", 10, 0.2, 5};
