@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// The four answers of the page in what can happen to a building: quiet, shaking, damaged, acknowledged, a
-// sensor that dies, opened after all of it. A screenshot of each, and the words that must be on it.
+// Checks the four answers of the page in every situation: quiet, shaking, damaged, acknowledged,
+// with a dead sensor, and opened afterwards. Takes a screenshot of each and checks the words on
+// it.
 const {chromium} = require('playwright-core');
 const {spawn} = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');
 
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
-const kPatience = {timeout: 60000}; // of whatever a busy machine may take
-const kDrop_s = 60, kPlayed_s = 900, // ended when they have been looked at
+const kPatience = {timeout: 60000}; // for anything, on a busy machine
+const kDrop_s = 60, kPlayed_s = 900, // ended after the check
    kDrop_ratio = -0.15, kMaxOff = 0.02, kSharp = 0.6, kLate_s = 20;
 const kDamaged = 'kx_1_y2', kDead = 'F1-X2';
 
@@ -177,7 +178,7 @@ async function startedAnew(browser, serve, options) {
   const page = await open(browser, await addressOf(start(...options)));
   await until(page, 'started anew: the answers are there', () => framewatch.told && framewatch.told.answers.length === 4);
   await until(page, 'started anew: how old all is', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
-  // Without [watch] it was the page's own server that found the change, and nobody stored it.
+  // Without [watch] the page's own server finds the change, and nobody stores it.
   expect(/Not known yet/.test(await answer(page, 0)), 'started anew: what nobody stored is not known');
   expect(/A shake: a story swayed by up to/.test(await answer(page, 2)), 'started anew: what it went through is said');
   expect(/Read the report/.test(await answer(page, 2)), 'started anew: the report is named');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// changes: what is announced of a change of stiffness, when, and how right its size is.
+// changes: measures when changes of stiffness are announced and how right their sizes are.
 #include <chrono>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The studies of an earthquake's minutes judge right: known answers, and short runs of both.
+// Tests the studies of an earthquake's minutes with known answers and short runs of both.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -111,7 +111,7 @@ TEST(ChangeScore, ScoresEveryAnnouncement) {
   EXPECT_EQ(score.early, 1);
 }
 
-/// An estimator that knows the truth up to a Gaussian error reaches what must be reached.
+/// An estimator that knows the truth up to a Gaussian error meets every requirement.
 TEST(ChangeScore, AcceptsHonestErrors) {
   std::vector<ScoredCase> cases;
   estimator::Random random(8);
@@ -127,7 +127,7 @@ TEST(ChangeScore, AcceptsHonestErrors) {
   for (const Demand& d : change_demands(cases, 1.5)) EXPECT_TRUE(d.holds) << d.text;
 }
 
-/// The simulation and the daemon's estimation agree on a plain loss. Without noise, linear.
+/// The simulation and the daemon's estimation agree on a simple loss. Without noise, linear.
 TEST(Changes, FindAPlainLossWithItsSize) {
   ChangeCase of = plain_case();
   ChangeRunOptions options;
@@ -143,7 +143,7 @@ TEST(Changes, FindAPlainLossWithItsSize) {
   EXPECT_EQ(score.early, 0);
 }
 
-/// Nothing is interrupted, nothing is noisy, the design is right: values are right.
+/// Without interruption and noise, and with the right design, values are right.
 TEST(Interruptions, GiveExactValuesWithoutInterruption) {
   constexpr double kMaxError = 1e-3;  // of the sampled motion, without noise
   const InterruptionResult r = run_interruption({0, false, Interruption::none, 0, kSeed, 1e-6});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// interruptions: what is estimated after a start in motion or an interruption, and how soon.
+// interruptions: measures estimates after an interruption or a start in motion, and how soon they
+// return.
 #include <algorithm>
 #include <cstdio>
 #include <thread>

@@ -9,7 +9,8 @@
 
 namespace framewatch::earthquake {
 
-/// The value below which `share` of them lie, 0..1; NaN without values. Infinite values count.
+/// Returns the value below which `share` (0..1) of them lie; NaN without values. Infinite values
+/// count.
 inline double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto at =

@@ -11,7 +11,7 @@ import lcm_event
 from building import Building
 from nats_client import Client
 
-FLOOD, BEYOND = 20_000, 300  # messages an hour that a worker takes of a building (docs/fleet.md), and what is beyond
+FLOOD, BEYOND = 20_000, 300  # limit of messages an hour from a building (docs/fleet.md), and the number sent beyond it
 PATIENCE_S = 120
 
 
@@ -69,7 +69,7 @@ class BadInput:
             self.must(reason in said, f"refused: {reason}")
 
     def clocks(self):
-        """Events and clocks that jump over years: nothing is lost that the history has."""
+        """Events and clocks that jump over years: no event of the history is lost."""
         self.hub.enroll("c3")
         one = Building(self.hub, "c3")
         one.start()
@@ -88,7 +88,7 @@ class BadInput:
         self.must(until(lambda: self.events_of("c3") == 8), "so are those of the year 148 000")
 
     def flood(self):
-        """By one worker, whose count is exact."""
+        """With one worker, whose count is exact."""
         self.hub.enroll("c4")
         self.hub.enroll("c5")
         self.workers.stop()
@@ -105,7 +105,7 @@ class BadInput:
                         self.events_of("c5") == 1, 300), "another building's event passes a flood")
         told = self.postgres.ask("SELECT name, sum(messages) FROM flooding JOIN building ON building.id = building GROUP BY 1")
         hours = self.postgres.number("SELECT count(DISTINCT hour) FROM flooding")
-        # The hour may end while it floods: then the count began anew.
+        # If the hour ends during the flood, the count starts again.
         self.must(told == f"c4|{BEYOND}" or hours > 1, f"what is beyond {FLOOD} an hour is counted, not stored ({told})")
         self.must(self.events_of("c4") == FLOOD or hours > 1, f"{self.events_of('c4')} events of who floods are stored")
 
@@ -114,7 +114,7 @@ class BadInput:
         return json.loads(client.request(subject, request, timeout_s=20) or b"{}")
 
     def full_hub(self):
-        """FW_RAW is full: pieces are refused and wait in the building; its events pass them."""
+        """FW_RAW is full: it refuses pieces, which wait in the building, while events pass."""
         self.hub.enroll("c6")
         one = Building(self.hub, "c6")
         one.start_run()
@@ -124,7 +124,7 @@ class BadInput:
         info = self.operator("$JS.API.STREAM.INFO.FW_RAW")["config"]
         self.workers.stop()
         filler = Client(self.hub.client[0], self.hub.certificates, "operator", 30)
-        for number in range(info["max_bytes"] // 250_000 + 400):  # at last small ones: no piece must fit
+        for number in range(info["max_bytes"] // 250_000 + 400):  # small ones last, so that no piece fits
             size = 249_500 if number < info["max_bytes"] // 250_000 + 1 else 1000
             filler.publish("fw.up.c6.raw.filler", b"\0" * size, {"Nats-Msg-Id": f"c6/raw/filler/{number}"})
             filler.round_trip(30)
@@ -148,7 +148,7 @@ class BadInput:
         one.stop()
 
     def expired(self):
-        """An uplink with a certificate that is over says so, and goes on with the new file by itself."""
+        """An uplink with an expired certificate reports it and continues with the new file by itself."""
         self.hub.enroll("c7")
         at, folder = f"{self.hub.certificates}/c7.pem", self.hub.certificates
         shutil.copy(at, f"{at}.good")

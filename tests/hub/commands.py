@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Commands of people at the page to a building that moves: who may give them, what comes of each, what the journal says."""
+"""Commands that people give on the page to a moving building: rights, effects and journal entries."""
 import json
 import os
 import subprocess
@@ -13,7 +13,7 @@ import lcm_event
 from building import Building
 from page import Page
 
-SILENT, SILENT_FROM_S, FETCHED_S = ("F1-Y1", "F2-X2"), 40, 10  # which sensors fall silent and when; what is fetched
+SILENT, SILENT_FROM_S, FETCHED_S = ("F1-Y1", "F2-X2"), 40, 10  # silent sensors and times; the fetched stretch
 WAIT_S = 90
 SECOND_US = 1_000_000
 VIEWS = {"#/": "document.querySelector('main tbody tr td.name a').textContent === 'd1'",
@@ -42,7 +42,7 @@ class Commands:
         return answer["request"] if status == 202 else status
 
     def outcome(self, request):
-        """What the journal says that the building answered; None: nothing yet."""
+        """The building's answer in the journal; None if there is none yet."""
         for row in self.page.ask(self.operator, "journal.json") or []:
             if row["request"] == request and row["done"] + row["refused"] > 0:
                 return row["done"] == 1
@@ -57,7 +57,7 @@ class Commands:
         return {one["id"]: one["known_to"] for one in view.get("raised", []) if one["known"]}
 
     def resend(self, building):
-        """A database that lost what it had."""
+        """A database that lost its contents."""
         building.until_acknowledged()
         self.must(until(lambda: self.postgres.number("SELECT count(*) FROM event") >= 3), "events are in the database")
         self.postgres.ask("DELETE FROM event")
@@ -86,7 +86,7 @@ class Commands:
         return (self.page.ask(self.operator, "building.json?name=d1") or {}).get("stretches", [])
 
     def samples(self, files):
-        """Of each channel its values."""
+        """The values of each channel."""
         out = f"{self.hub.folder}/samples.csv"
         self.hub_command("convert", *files, "--unit", "1e-6", out)
         with open(out) as file:
@@ -94,7 +94,7 @@ class Commands:
         return sorted(zip(*rows))
 
     def acknowledge(self, building):
-        """Sensors that fall silent are raised; one is acknowledged here, one there."""
+        """Silent sensors raise events. One is acknowledged here, one in the building."""
         def silent():
             view = self.page.ask(self.operator, "building.json?name=d1") or {}
             return [one["id"] for one in view.get("raised", []) if one["kind"] == "channel_silent"]
@@ -109,7 +109,7 @@ class Commands:
         self.must(until(lambda: second in self.known()), "and it knows what was acknowledged in the building")
 
     def look(self):
-        """At every view, in a browser."""
+        """Opens every view in a browser."""
         if not chromium.program():
             print("  not looked at: no chromium (deploy/install-deps --with page)")
             return

@@ -44,7 +44,7 @@ def missing():
 
 
 def ground(path, seconds, seed):
-    """Weak motion throughout, strong for some seconds: noise through the soil's resonance at 4 Hz."""
+    """Weak motion all the time, strong for some seconds: noise through the soil's resonance at 4 Hz."""
     chance = random.Random(seed)
     w, zeta, dt = 2 * math.pi * 4, 0.6, 1 / RATE
     speed = shift = 0.0
@@ -97,14 +97,14 @@ def say(text=""):
 
 
 def inside(a, postgres):
-    """In a network of its own: everything but the browser."""
+    """Runs everything except the browser in a network namespace."""
     folder, program = a.inside, os.path.abspath(a.program)
     say("a hub of three servers, PostgreSQL, a worker, the page ...")
     hub = Hub(ROOT, program, folder)
     hub.start()
     hub.wait()
     urls = [argument for url in hub.urls() for argument in ("--hub", url)]
-    for left in (4, 3, 2, 1, 0):  # a busy machine's servers may take longer than it waits
+    for left in (4, 3, 2, 1, 0):  # servers of a busy machine may need longer than the time limit
         if hub.fleet("setup", *urls, "--buildings", "10", good=(0, 2) if left else (0,)).returncode == 0:
             break
     more = [*urls, "--dir", hub.certificates, "--database", postgres.where]
@@ -206,7 +206,7 @@ def keep(folder, target):
 
 
 def outside(a):
-    """The page's port, for a browser that is outside of the buildings' network."""
+    """Forwards the page's port to a browser outside of the buildings' network."""
     folder = tempfile.mkdtemp(prefix="fw-demo-")
     child = subprocess.Popen([f"{HERE}/../support/private-network", sys.executable, os.path.abspath(__file__), a.program,
                               "--inside", folder, "--port", str(a.port), "--seconds", str(a.seconds), "--speed",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Three nats-servers of this test's own, as deploy/fleet/ describes them, and workers at them."""
+"""Three nats-servers for this test, configured as in deploy/fleet/, and workers."""
 import os
 import re
 import shutil
@@ -21,7 +21,7 @@ def free_ports(count):
 
 
 class Process:
-    """A process that this test began, and ends."""
+    """A process that this test starts and ends."""
 
     every = []
 
@@ -47,7 +47,7 @@ class Process:
         return self.child.returncode
 
     def usage(self):
-        """Seconds of processor so far, and bytes resident."""
+        """Seconds of processor so far, and resident bytes."""
         with open(f"/proc/{self.child.pid}/stat") as file:
             words = file.read().rsplit(")", 1)[1].split()
         ticks, pages = int(words[11]) + int(words[12]), int(words[21])
@@ -133,7 +133,7 @@ class Hub:
         self.fleet("enroll", name, request, "--out", f"{self.certificates}/{name}.pem", *running)
 
     def copy_stores(self):
-        """As a disk is some seconds before its power fails."""
+        """Restores the disk of some seconds before, as after a power failure."""
         for i in (1, 2, 3):
             shutil.rmtree(f"{self.folder}/old{i}", ignore_errors=True)
             subprocess.run(["cp", "-r", f"{self.folder}/store{i}", f"{self.folder}/old{i}"], check=False,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the certificate of a building may do at a real server, and what not."""
+"""Rights of a building's certificate at a real server."""
 import base64
 import json
 import subprocess
@@ -8,7 +8,7 @@ import time
 import lcm_event
 from nats_client import Client, Denied
 
-SOON_S = 15  # a request that nobody answers takes 30 s
+SOON_S = 15  # a request without an answer takes 30 s
 DENIED = "Permissions Violation"
 
 
@@ -20,7 +20,7 @@ def denied(client, act):
 
 
 def check(hub, one):
-    """Problems, in words. `one` is a building with its uplink running; b1 and b2 are enrolled."""
+    """Returns a list of problems. `one` is a building with a running uplink; b1 and b2 are enrolled."""
     problems = []
 
     def must(good, what):
@@ -91,7 +91,7 @@ def steals_keys(hub, thief, one):
 
 
 def revoke(hub, one):
-    """Seconds until a revoked building is out, and problems."""
+    """Seconds until a revoked building is disconnected, and problems."""
     held = Client(hub.client[0], hub.certificates, one.name)
     begin = time.monotonic()
     hub.fleet("revoke", one.name, *hub.pid_files())
@@ -108,7 +108,7 @@ def revoke(hub, one):
 
 
 def strangers(hub):
-    """A certificate of another authority, and a client without any."""
+    """Tries a certificate of another authority, and a client without one."""
     other = f"{hub.folder}/other"
     subprocess.run(["mkdir", "-p", other], check=True)
     subprocess.run([hub.program, "fleet", "authority", "--dir", other], check=True, stdout=subprocess.DEVNULL)

@@ -11,16 +11,16 @@ import urllib.parse
 import urllib.request
 
 LONGEST_S = 90  # until everything has been seen
-# What needs a CAN bus that is there.
+# Expressions that need a working CAN bus.
 WITHOUT_CAN = {"framewatch_can_load_ratio"}
-# What needs a hub of many buildings (./test --fleet).
+# Expressions that need a hub of many buildings (./test --fleet).
 OF_A_HUB = "framewatch_uplink_"
-# What is wrong with the two buildings of tests/metrics/run: the second one has no sensors.
+# Alerts for the two buildings of tests/metrics/run: the second one has no sensors.
 EXPECTED_ALERTS = {"FramewatchCanBus", "FramewatchStiffnessChange", "FramewatchGap"}
 
 
 def series(prometheus, expression):
-    """Number of series; None when it is no PromQL."""
+    """Returns the number of series; None if it is not valid PromQL."""
     query = urllib.parse.urlencode({"query": expression})
     try:
         with urllib.request.urlopen(f"{prometheus}/api/v1/query?{query}") as answer:

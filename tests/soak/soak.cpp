@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// soak: a building's months in hours, and whether all is well then.
+// soak: runs months of a building in hours and checks limits.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>

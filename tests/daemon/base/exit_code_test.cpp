@@ -28,7 +28,7 @@ namespace exit_code_test {
 namespace fs = std::filesystem;
 
 // Limits.
-constexpr std::chrono::seconds kSoon{30};  // for what takes a fraction of one
+constexpr std::chrono::seconds kSoon{30};  // for actions that take a fraction of one
 
 const std::string kScenario = FRAMEWATCH_SOURCE_DIR "/configs/scenario_table_two_story.toml";
 
@@ -37,7 +37,7 @@ struct Ran {
   std::string said;  ///< on stderr
 };
 
-/// `command` of the program in a shell; what goes to stdout is the command's to say.
+/// Runs `command` of the program in a shell. `command` may redirect stdout.
 Ran run(const std::string& command) {
   const test::TemporaryDirectory directory;
   const std::string said = directory.path("said");

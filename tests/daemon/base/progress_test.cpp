@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 constexpr int kBytes = 200'000;
 constexpr auto kDrawn = 3500ms;  // after the first 2 s it is drawn every half second
 
-/// A terminal as standard error, until it goes.
+/// Makes standard error a terminal until it is destroyed.
 class Terminal {
  public:
   Terminal() : terminal_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {

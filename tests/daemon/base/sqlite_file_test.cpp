@@ -25,7 +25,7 @@ TEST(SqliteFile, AFailedStatementFailsTheTransaction) {
     EXPECT_FALSE(put.run());
     SqliteStatement other = file.prepare("INSERT INTO a VALUES (2)");
     EXPECT_FALSE(other.run());
-    return true;  // whoever forgets to look is not believed
+    return true;  // commit fails if the error was not read
   }));
   EXPECT_NE(file.error(), "");
   SqliteStatement count = file.prepare("SELECT count(*) FROM a");

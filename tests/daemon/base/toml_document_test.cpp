@@ -9,7 +9,7 @@
 namespace framewatch::daemon {
 namespace toml_document_test {
 
-constexpr int kDeep = 100'000;  // nested as deep, the parser's stack overflows
+constexpr int kDeep = 100'000;  // nested this deep, the parser's stack overflows
 
 std::string key_of(int parts) {
   std::string key = "a";
@@ -17,7 +17,7 @@ std::string key_of(int parts) {
   return key;
 }
 
-/// The one problem of a text, and where it is.
+/// Returns the only problem of a text with its place.
 std::string problem_of(const std::string& text) {
   std::vector<TextProblem> problems;
   EXPECT_FALSE(parse_toml(text, problems));

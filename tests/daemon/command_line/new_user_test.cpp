@@ -12,7 +12,7 @@ namespace new_user_test {
 
 using test::ShellResult;
 
-/// What somebody types who follows README.md for the first time.
+/// Runs the commands of a user who follows README.md for the first time.
 class NewUser : public testing::Test {
  protected:
   void SetUp() override {
@@ -20,7 +20,7 @@ class NewUser : public testing::Test {
     test::write_file(directory_.path("record.csv"), example("```\ntime_s"));
   }
 
-  /// The first block of README.md that begins so, without its fences.
+  /// Returns the first block of README.md with this beginning, without its fences.
   static std::string example(const std::string& begin) {
     const std::string readme = test::read_file(FRAMEWATCH_SOURCE_DIR "/README.md");
     const std::size_t at = readme.find(begin), from = readme.find('\n', at) + 1;

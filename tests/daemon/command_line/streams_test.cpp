@@ -128,7 +128,7 @@ TEST_F(Streams, AnInterruptedRunKeepsItsFrames) {
   EXPECT_EQ(read("frames"), "");
 }
 
-/// On a terminal of script(1).
+/// Runs on a terminal of script(1).
 TEST_F(Streams, ProgressAndColorAppearOnlyOnTerminals) {
   const std::string slow = "$F simulate scenario_table_two_story.toml --seconds 6000 --out x.csv";
   const auto on_terminal = [&](const std::string& before, const std::string& line) {

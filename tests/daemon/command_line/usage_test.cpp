@@ -19,7 +19,7 @@ class Usage : public testing::Test {
  protected:
   ShellResult shell(const std::string& line) { return test::shell(directory_, line); }
 
-  /// The first words of the list that --help prints below a heading.
+  /// Returns the first words of the list that --help prints below a heading.
   std::vector<std::string> listed(const std::string& command, const std::string& heading) {
     std::istringstream lines(shell("$F help " + command).out);
     std::vector<std::string> out;
@@ -33,7 +33,7 @@ class Usage : public testing::Test {
     }
     return out;
   }
-  /// But those of framewatch-fleet.
+  /// Leaves out the commands of framewatch-fleet.
   std::vector<std::string> commands() {
     std::vector<std::string> out = listed("", "Subcommands:");
     std::erase_if(out, [](const std::string& c) { return c == "fleet" || c == "uplink"; });
@@ -68,7 +68,7 @@ TEST_F(Usage, ReportsEveryMisspeltOptionFirst) {
             "framewatch: there is no option -json: did you mean --json?\n");
   EXPECT_EQ(shell("$F check --zzz b.toml").err,
             "framewatch: there is no option --zzz: framewatch help check lists them\n");
-  // What follows -- is a name, whatever it looks like.
+  // A word after -- is a name, whatever it looks like.
   EXPECT_NE(shell("$F check -- --jsn").err.find("No such file"), std::string::npos);
 }
 
@@ -100,7 +100,7 @@ TEST_F(Usage, RunsFleetAsASeparateProgram) {
             "framewatch fleet: needs the program framewatch-fleet; install the Debian package "
             "framewatch-fleet\nframewatch uplink: needs the program framewatch-fleet; install the "
             "Debian package framewatch-fleet\n");
-  // Whatever lies beside the program, or in PATH, gets the words that follow.
+  // A program of that name beside the program, or in PATH, gets the remaining words.
   test::write_file(directory_.path("framewatch-fleet"), "#!/bin/sh\necho \"$@\"\n");
   EXPECT_EQ(shell("chmod +x framewatch-fleet; ./framewatch fleet task m 1").out, "task m 1\n");
   EXPECT_EQ(shell("./framewatch uplink b.toml").out, "uplink b.toml\n");
@@ -166,7 +166,7 @@ TEST_F(Usage, CompletionAndManualListEveryCommandAndOption) {
   }
 }
 
-/// With what this machine has of the shells; without it the test above stands alone.
+/// Uses the shells of this machine; otherwise only the test above applies.
 TEST_F(Usage, ShellsAcceptTheirScripts) {
   for (const std::string check : {"bash -n", "zsh -n", "fish --no-execute"}) {
     const std::string name = check.substr(0, check.find(' '));

@@ -18,7 +18,7 @@ BO_ 400 Big: 64 A
  SG_ X_0 : 0|16@1- (0.001,0) [0|0] "" A
 )";
 
-/// kGoodConfig with its LCM source in place of `source`, and `more` at its end.
+/// Returns kGoodConfig with its LCM source replaced by `source`, and `more` at its end.
 std::string problems_of(const std::string& source, const std::string& more,
                         const std::string& dbc = kDbc) {
   const test::TemporaryDirectory directory;

@@ -11,7 +11,7 @@
 namespace framewatch::daemon {
 namespace config_problems_test {
 
-/// kGoodConfig with one text replaced, and every problem it then has.
+/// kGoodConfig with one text replaced, and all problems that this causes.
 struct Malformed {
   const char* name;
   const char* what;

@@ -15,9 +15,9 @@ namespace framewatch::daemon {
 namespace config_size_test {
 
 // Limits.
-constexpr std::chrono::seconds kToRefuse{20};  // a debug build on a busy machine; it took minutes
+constexpr std::chrono::seconds kToRefuse{20};  // for a debug build on a busy machine
 
-/// A tower of `bays` x `bays`, with a sensor on every frame of every floor.
+/// Returns a tower of `bays` x `bays` with a sensor on every frame of every floor.
 std::string tower(int stories, int bays, const std::string& estimator) {
   std::string x, y;
   for (int f = 0; f <= bays; ++f) {

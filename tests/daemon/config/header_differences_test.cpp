@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A record whose header says otherwise than the configuration.
+// Tests records whose header contradicts the configuration.
 #include <string>
 
 #include <gtest/gtest.h>

@@ -21,8 +21,8 @@ using test::write_file;
 constexpr double kHourLogLimit_s = 1.0;  // measured 0.2 s in Release, 4 nodes at 100 Hz
 
 struct Reading {
-  std::vector<int> intact;  ///< which of the ten came back with their own payload
-  int other = 0;            ///< events that are none of the ten
+  std::vector<int> intact;  ///< which of the ten came back with their payload
+  int other = 0;            ///< events that are not among the ten
   std::int64_t damaged_bytes = 0;
   std::vector<LogDamage> damage;
   LogRead last = LogRead::error;  ///< last result before end

@@ -27,7 +27,7 @@ constexpr double kBaseline = 5e9;  // N/m
 constexpr double kWindow_s = 5, kLong_s = 3600, kDay_s = 86400;
 constexpr double kNoise = 0.01, kLongNoise = 0.004;  // relative, of a window
 constexpr double kStrong_m = 1e-2, kWeak_m = 2e-4;   // rms deformation
-/// As in the six-story building of San Bernardino: 13 % over a factor 23.
+/// Like the six-story building of San Bernardino: 13 % over a factor of 23.
 constexpr double kPerLog = 0.13 / 3.14;
 
 Time at(double s) {

@@ -20,7 +20,7 @@ using daemon::kSecond_us;
 constexpr std::int64_t kHour_us = 3600 * kSecond_us;
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 
-/// Raw logs of these hours after the start, each of an hour where the next follows.
+/// Writes raw logs of these hours after the start. Each lasts an hour if the next one follows.
 std::vector<ArchiveLog> hours(const std::vector<int>& begins) {
   std::vector<ArchiveLog> out;
   for (const int h : begins)
@@ -39,7 +39,7 @@ TEST(ArchiveLogs, TasksStartAtMultiplesWithTheirLogs) {
   EXPECT_EQ(tasks[0].from_us, kStart_us);
   EXPECT_EQ(tasks[0].to_us, kStart_us + 2 * kHour_us);
   EXPECT_EQ(tasks[0].warm_up_us, kStart_us - 600 * kSecond_us);
-  // The last windows of a task come a few samples later: the next log is needed too.
+  // The last windows of a task come a few samples later, so the next log is needed too.
   EXPECT_EQ(tasks[0].logs, (std::vector<std::string>{"1", "2"}));
   EXPECT_EQ(tasks[1].logs, (std::vector<std::string>{"1", "2", "3", "4"}));
   EXPECT_EQ(tasks[2].logs, (std::vector<std::string>{"3", "4"}));
@@ -77,7 +77,7 @@ TEST(ArchiveLogs, TakeTheClosedRawLogsOfAHistory) {
     EXPECT_TRUE(logs[0].path.ends_with("20261122T010000Z.lcmlog.zst"));
     EXPECT_EQ(logs[0].start_us, kStart_us + kHour_us);
     EXPECT_EQ(logs[0].end_us, kStart_us + 2 * kHour_us + kSecond_us);  // names are rounded down
-    EXPECT_EQ(logs[1].end_us, kStart_us + 26 * kHour_us);              // it cannot be read
+    EXPECT_EQ(logs[1].end_us, kStart_us + 26 * kHour_us);              // unreadable
     add_digests(logs, problems);
     EXPECT_TRUE(problems.empty());
     EXPECT_EQ(logs[0].sha256.size(), 64u);

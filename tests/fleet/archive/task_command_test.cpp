@@ -86,7 +86,7 @@ class FleetTask : public testing::Test {
     test::write_file(manifest_, text);
   }
 
-  /// Exit status, and the lines that were printed.
+  /// Returns the exit status and the printed lines.
   std::pair<int, std::vector<Json>> run(const std::vector<int>& numbers) {
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
@@ -108,7 +108,7 @@ class FleetTask : public testing::Test {
   std::string said_;
 };
 
-/// Of filters that stay as the design has them: otherwise every task is tuned to its own logs.
+/// Keeps the filters at the design; otherwise every task is tuned to its logs.
 TEST_F(FleetTask, AllTasksGiveTheWholeReplay) {
   std::string building = test::read_file(test::table_config());
   const std::string section = "[estimator]\n";
@@ -164,11 +164,11 @@ TEST_F(FleetTask, SkipsFinishedTasks) {
   EXPECT_EQ(status, 0);
   EXPECT_EQ(lines.at(0)["result"], "done_before");
   EXPECT_EQ(fs::last_write_time(output(1)), written);
-  // Without the output the line means nothing.
+  // The line does not count without the output.
   fs::remove(output(1));
   EXPECT_EQ(run({1}).second.at(0)["result"], "done");
   EXPECT_EQ(test::read_file(output(1)), first);
-  // Nor with another key, or torn.
+  // Nor with another key, or if damaged.
   for (const std::string& line : {std::string("{\"key\": \"x\", \"result\": \"done\"}"),
                                   std::string("{\"key\": \""), std::string("[]")}) {
     test::write_file(tasks_[0].out + ".json", line);
@@ -236,7 +236,7 @@ TEST_F(FleetTask, RefusesNumbersBeyondTheManifest) {
   EXPECT_NE(said_.find("m.tsv:1: "), std::string::npos) << said_;
 }
 
-/// The program itself: killed at any time, and asked again.
+/// Runs the program, kills it at any time, and starts it again.
 TEST_F(FleetTask, GivesTheSameOutputAfterBeingKilled) {
   fs::create_directories(directory_.path("raw"));
   fs::copy_file(log_, directory_.path("raw/rec.lcmlog"));

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr std::size_t kParts = 10;  // five streams, a consumer each
 
-/// Keeps configurations as JetStream does.
+/// Keeps configurations like JetStream.
 struct FakeJetStream {
   std::map<std::string, json> parts;  // by STREAM or STREAM.CONSUMER
   int changes = 0;
@@ -45,7 +45,7 @@ struct FakeJetStream {
       if (const std::string name = after(change); !name.empty()) {
         const json request = json::parse(text);
         parts[name] = request.contains("config") ? request["config"] : request;
-        // As the server does: what is nought is left out, and it says more than it was told.
+        // Like the server, leaves out zeros and adds fields.
         for (auto at = parts[name].begin(); at != parts[name].end();)
           at = *at == json(false) ? parts[name].erase(at) : std::next(at);
         parts[name]["compression"] = "none";

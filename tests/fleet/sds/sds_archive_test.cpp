@@ -30,7 +30,7 @@ class SdsArchive : public testing::Test {
     return add_to_sds(root_, std::vector<std::uint8_t>(bytes.begin(), bytes.end()),
                       {"JP", "KOBE3"});
   }
-  /// Samples of a file by libmseed itself: of how many runs without a gap, and these.
+  /// Samples of a file, read with libmseed, and the number of runs without a gap.
   std::vector<std::vector<std::int32_t>> read(const std::string& file) {
     std::vector<std::vector<std::int32_t>> out;
     MSTraceList* list = nullptr;
@@ -86,7 +86,7 @@ TEST_F(SdsArchive, JoinsOverlappingStretches) {
   ASSERT_EQ(runs.size(), 1u);
   EXPECT_EQ(runs[0].size(), 1500u);
   EXPECT_EQ(runs[0][499], 499);
-  EXPECT_EQ(runs[0][500], 0);  // what was there first stays
+  EXPECT_EQ(runs[0][500], 0);  // existing samples stay
 }
 
 TEST_F(SdsArchive, KeepsAGap) {

@@ -16,7 +16,7 @@ namespace commander_test {
 
 constexpr std::int64_t kUtc_us = 1'795'305'600'000'000;
 
-/// Buildings answer as answers_ says; one that is not in it says nothing.
+/// Buildings give the answers in answers_; others do not answer.
 class Line : public Link {
  public:
   bool up = true;

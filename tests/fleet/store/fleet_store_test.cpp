@@ -20,7 +20,7 @@ constexpr double kMinPerSecond = 1000;  // summaries of 120 parameters, a second
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 
-/// On a real server: ./test --fleet starts one, FRAMEWATCH_POSTGRES says where.
+/// Tests with a real server: ./test --fleet starts one and sets FRAMEWATCH_POSTGRES.
 class FleetStoreOnServer : public testing::Test {
  protected:
   void SetUp() override {
@@ -148,7 +148,7 @@ TEST_F(FleetStoreOnServer, IsFastEnough) {
           {"b" + std::to_string(i), summary(kStart_us + b * 600'000'000, 10, 120)});
   const double began_s = daemon::process_usage().cpu_s;
   for (const FleetBatch& batch : batches) ASSERT_EQ(store.add(batch), "");
-  // Its own processor time: the machine may be busy.
+  // Processor time, because the machine may be busy.
   const double took_s = daemon::process_usage().cpu_s - began_s;
   const double rate = kBatches * kEach / took_s;
   std::printf("%.0f summaries a second of processor\n", rate);

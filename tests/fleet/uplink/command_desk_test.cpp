@@ -9,7 +9,7 @@ namespace command_desk_test {
 
 class Commands : public test::UplinkTest {
  protected:
-  /// As the page of the hub sends it.
+  /// Returns a command as the hub's page sends it.
   Message command(const std::string& verb, const std::string& request, const std::string& text) {
     Message m;
     m.subject = "fw.down.a." + verb;
@@ -20,7 +20,7 @@ class Commands : public test::UplinkTest {
     m.bytes.assign(text.begin(), text.end());
     return m;
   }
-  /// The answer; empty when there was none.
+  /// Returns the answer; empty if there is none.
   std::string answer(const Message& m) {
     hub_.answered.clear();
     hub_.bring(m);
@@ -131,7 +131,8 @@ TEST_F(Commands, ResendSendsStoredMessagesAgain) {
   EXPECT_EQ(kept_twice(), 3U);
 }
 
-// Within minutes a stream takes one Nats-Msg-Id once, and it is the database that lacks something.
+// A stream accepts one Nats-Msg-Id only once within minutes, but here the database lacks the
+// message.
 TEST_F(Commands, TheHubAcceptsMessagesSentAgainOnCommand) {
   secret_ = "mine";
   for (int i = 0; i < 10; ++i) add_event(i, test::kStart_us + i * test::kHour_us);

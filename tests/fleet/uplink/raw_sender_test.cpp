@@ -8,7 +8,7 @@ namespace raw_sender_test {
 
 constexpr std::size_t kFile_bytes = 10 * 128 * 1024 - 5;
 
-/// "Exports" noise that no compression makes smaller.
+/// "Exports" noise that does not compress.
 class FakeExporter : public RawExporter {
  public:
   explicit FakeExporter(int& times, std::string problem = "")
@@ -86,7 +86,7 @@ TEST_F(Raw, ContinuesAfterARestart) {
   run(20);
   EXPECT_EQ(exports_, 1);
   EXPECT_EQ(hub_.count("a/raw/r1/"), 10U);
-  EXPECT_LE(kept_twice(), 1U);  // the one whose answer nobody read
+  EXPECT_LE(kept_twice(), 1U);  // the one whose answer was not read
   EXPECT_EQ(received("r1").size(), kFile_bytes);
 }
 

@@ -108,7 +108,7 @@ TEST(SendWindow, TakesMessagesWhileOnlyARefusedOneWaits) {
   w.add(numbered(2), 30 * kSecond_us);
   EXPECT_EQ(w.due(30 * kSecond_us), (std::vector<std::int64_t>{2}));
   EXPECT_TRUE(w.takes(31 * kSecond_us));
-  EXPECT_FALSE(w.takes(32 * kSecond_us));  // that one is not answered
+  EXPECT_FALSE(w.takes(32 * kSecond_us));  // that one has no answer
   ASSERT_TRUE(w.acknowledged(2, 32 * kSecond_us));
   EXPECT_TRUE(w.takes(59 * kSecond_us));
   EXPECT_EQ(w.due(61 * kSecond_us), (std::vector<std::int64_t>{1}));
@@ -155,7 +155,7 @@ TEST(VerdictTest, AcceptsTheNumberOfAStoredMessage) {
   EXPECT_FALSE(verdict(R"({"stream":"FW_EVENT","seq":7,"duplicate":"yes"})").duplicate);
 }
 
-// The same 503, by nats-server 2.9.10.
+// The same 503 from nats-server 2.9.10.
 TEST(VerdictTest, TellsAFullStreamFromAnAbsentHub) {
   const Verdict full =
       verdict(R"({"error":{"code":503,"err_code":10077,"description":"maximum bytes exceeded"}})");

@@ -11,7 +11,7 @@ namespace framewatch::fleet {
 namespace uplink_test {
 
 constexpr int kEvents = 30;
-constexpr std::size_t kPeriodsOfAnHour = 7;  // ten minutes and the hour; minutes are not asked for
+constexpr std::size_t kPeriodsOfAnHour = 7;  // ten minutes and the hour; minutes are not sent
 
 class UplinkRules : public test::UplinkTest {};
 
@@ -68,7 +68,7 @@ TEST_F(UplinkRules, SendsAnEventAtOnceAndOnlyOnce) {
   uplink_->heard("EVENT", drivers::encoded(live_event(1, test::kStart_us)));
   uplink_->step(now());
   ASSERT_EQ(hub_.count("a/event/gap/1/"), 1U);
-  add_event(1, test::kStart_us);  // a second later it stands in the history
+  add_event(1, test::kStart_us);  // it is in the history a second later
   run(10);
   EXPECT_EQ(kept_twice(), 0U);
 }
@@ -82,7 +82,7 @@ TEST_F(UplinkRules, SendsAPeriodOnlyWhenItIsOver) {
       " ON CONFLICT DO NOTHING");
   begin();
   run(10);
-  EXPECT_EQ(hub_.count("a/summary/600/"), 2U);  // of the third nobody knows yet that it is over
+  EXPECT_EQ(hub_.count("a/summary/600/"), 2U);  // nothing has closed the third yet
   EXPECT_EQ(hub_.count("a/summary/3600/"), 0U);
 }
 
@@ -102,7 +102,7 @@ TEST_F(UplinkRules, ResendsAPeriodThatGrew) {
   EXPECT_EQ(hub_.stored[key], 2);
 }
 
-// Within minutes a stream takes one Nats-Msg-Id once.
+// A stream accepts one Nats-Msg-Id only once within minutes.
 TEST_F(UplinkRules, TheHubAcceptsAPeriodThatGrew) {
   secret_ = "mine";
   add_hour(test::kStart_us, 1);
@@ -156,9 +156,9 @@ TEST_F(UplinkRules, LosesNothingInAPowerCutOfTheHub) {
   begin();
   run(30);
   ASSERT_EQ(hub_.count("a/event/gap/"), std::size_t{kEvents});
-  hub_.stored.clear();  // it had acknowledged them, and not yet given them to its disk
+  hub_.stored.clear();  // acknowledged, but not yet on its disk
   hub_.up = false;
-  run(7200, 1'000'000);  // two hours without: how long does not matter
+  run(7200, 1'000'000);  // two hours without; the duration does not matter
   hub_.reconnect();
   run(30);
   EXPECT_EQ(hub_.count("a/event/gap/"), std::size_t{kEvents});
@@ -190,7 +190,7 @@ TEST_F(UplinkRules, AnUnstableLineDoesNotResendForever) {
   EXPECT_EQ(hub_.stored["a/event/gap/1/" + std::to_string(test::kStart_us) + "/1"], 1);
   std::size_t sent = 0;
   for (int i = 0; i < 6; ++i) {
-    for (int more = 0; more < 4; ++more) {  // something is acknowledged all the time
+    for (int more = 0; more < 4; ++more) {  // acknowledgements come all the time
       add_event(100 + 4 * i + more, test::kStart_us + 100 + 4 * i + more);
       run(90, 500'000);
     }
@@ -201,7 +201,7 @@ TEST_F(UplinkRules, AnUnstableLineDoesNotResendForever) {
       return m.header(header::kKey).find("/gap/1/") != std::string::npos;
     }));
   }
-  EXPECT_EQ(sent, 2u);  // after the first break, 6 min later, and not after those that followed
+  EXPECT_EQ(sent, 2u);  // 6 min after the first interruption, not after later ones
 }
 
 TEST_F(UplinkRules, DoesNotResendOldAcknowledgedMessages) {
@@ -213,13 +213,13 @@ TEST_F(UplinkRules, DoesNotResendOldAcknowledgedMessages) {
   run(10);
   hub_.reconnect();
   run(30);
-  EXPECT_EQ(kept_twice(), 1U);  // the newest alone
+  EXPECT_EQ(kept_twice(), 1U);  // only the newest
 }
 
 TEST_F(UplinkRules, SendsTheRestAfterBeingKilled) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   begin();
-  uplink_->step(now());  // sent, and no answer read
+  uplink_->step(now());  // sent, answer not read
   uplink_.reset();
   begin();
   run(20);
@@ -239,7 +239,7 @@ TEST_F(UplinkRules, LosesNothingWhenTheClockJumps) {
   run(2);
   EXPECT_EQ(hub_.count("a/event/gap/"), 3U);
   uplink_.reset();
-  begin();  // its host's clock is behind every acknowledgement
+  begin();  // the clock is behind every acknowledgement
   run(2);
   add_event(4, test::kStart_us);
   run(2);
@@ -274,7 +274,7 @@ TEST_F(UplinkRules, SendsMinutesAroundAnEvent) {
 TEST_F(UplinkRules, KeepsMessagesThatAFullHubRefuses) {
   add_event(1, test::kStart_us);
   begin();
-  // As JetStream says it.
+  // JetStream's message.
   hub_.error = R"({"error":{"code":503,"err_code":10077,"description":"maximum bytes exceeded"}})";
   run(10);
   EXPECT_EQ(hub_.count("a/event/"), 0U);
@@ -317,7 +317,7 @@ TEST_F(UplinkRules, ReportsAnUnwritableOutboxWithoutFlooding) {
   uplink_->heard("EVENT", drivers::encoded(live_event(900, test::kStart_us)));
   run(20);
   EXPECT_NE(uplink_->status(now()).store_trouble, "");
-  EXPECT_EQ(hub_.count("a/event/gap/900/"), 1U);  // what is heard goes out all the same
+  EXPECT_EQ(hub_.count("a/event/gap/900/"), 1U);  // live events are sent anyway
   EXPECT_LE(hub_.published.size(), 3U);
   std::filesystem::remove(folder_.path("uplink.sqlite"));
   run(5);

@@ -11,7 +11,7 @@ namespace comparison_test {
 
 // Limits.
 constexpr int kTables = 300, kStiffnesses = 100, kPeriods = 10;
-constexpr int kMaxFalse = 30;           // tables of 300 with a loss that is none; 15 are meant
+constexpr int kMaxFalse = 30;           // tables of 300 with a false loss; 15 are expected
 constexpr double kTenThousand = 4.417;  // standard errors: 0.05 / 10000, one-sided
 
 Level level(const std::vector<float>& medians, float error) {
@@ -22,9 +22,9 @@ TEST(Comparison, LevelIsTheMedianWithItsError) {
   const Level l = level({10, 12, 11, 100}, 1);
   EXPECT_DOUBLE_EQ(l.value, 11.5);
   EXPECT_EQ(l.periods, 4);
-  // The windows' own error, where the periods scatter less than it.
+  // The windows' error, if the periods scatter less.
   EXPECT_NEAR(level({10, 10, 10, 10}, 2).std_error, 1.2533 * 2 / 2, 1e-3);
-  // The scatter, where it is larger than they say: MAD of 8, 9, 11, 12 about 10 is 1.5.
+  // The scatter, if it is larger: MAD of 8, 9, 11, 12 about 10 is 1.5.
   EXPECT_NEAR(level({8, 9, 11, 12}, 0.1F).std_error, 1.2533 * 1.4826 * 1.5 / 2, 1e-3);
 }
 

@@ -65,7 +65,7 @@ TEST(MissingDaysOnServer, AreTheDaysThatTheDatabaseLacks) {
   ASSERT_EQ(store.add(batch), "");
   const auto days = missing_days(store, "kobe");
   ASSERT_TRUE(days);
-  // Yesterday there is nothing, three days ago no summary; today is not over.
+  // Yesterday has nothing, three days ago no summary; today is not over.
   EXPECT_EQ(*days, (std::vector<std::int64_t>{today_us - day_us, today_us - 3 * day_us}));
   EXPECT_TRUE(missing_days(store, "osaka")->empty());
 }

@@ -16,11 +16,11 @@ namespace worker_test {
 constexpr std::int64_t kStep_us = 100'000;
 constexpr std::int64_t kMessages = 200;  // more is a flood
 
-/// A database that fails when it is told to.
+/// A database that fails on request.
 struct Database {
   std::vector<FleetBatch> batches;
   std::string problem;
-  std::set<std::int64_t> bad_events;  ///< ids that it does not take
+  std::set<std::int64_t> bad_events;  ///< ids that it refuses
 
   StoreOutcome store(const FleetBatch& batch) {
     if (!problem.empty()) return {problem, false};
@@ -77,7 +77,7 @@ TEST_F(WorkerTest, AcknowledgesAndLosesNothingWithoutTheDatabase) {
   const int requests = hub_.requests();
   hub_.time_is_over();
   pass(600'000);
-  EXPECT_LE(hub_.requests(), requests + 4);  // it does not ask while it waits
+  EXPECT_LE(hub_.requests(), requests + 4);  // it requests nothing while it waits
   database_.problem.clear();
   hub_.time_is_over();
   pass(60'000'000);
@@ -168,7 +168,7 @@ TEST_F(WorkerTest, ReturnsUnstoredMessagesAndStoresThemLater) {
   pass(1'000'000);
   EXPECT_EQ(hub_.given_back(), 10);
   database_.problem.clear();
-  pass(8'000'000);  // nobody's patience is over
+  pass(8'000'000);  // no timeout has passed
   EXPECT_EQ(database_.events().size(), 10u);
   EXPECT_EQ(hub_.held(), 0u);
 }
@@ -185,7 +185,7 @@ TEST_F(WorkerTest, RequestsDaysThatTheDatabaseLacks) {
   missing_ = std::vector<std::int64_t>(7, kHub_us - 86'400'000'000);
   hub_.hold(inventory);
   pass(60'000'000);
-  EXPECT_TRUE(hub_.commands().empty());  // what is under way may still come
+  EXPECT_TRUE(hub_.commands().empty());  // requested messages may still come
   pass(1'800'000'000);
   ASSERT_EQ(hub_.commands().size(), Worker::kMaxResent_days);
   const Message& asked = hub_.commands().front();

@@ -71,7 +71,7 @@ void round_trip(std::string_view section, int& keys) {
     const std::string text = std::string(o.key) + " = " + test::another_value(o) + "\n";
     const Settings changed = read<Settings>(section, text);
     EXPECT_FALSE(is_default(changed)) << text;
-    // And no other key's field.
+    // No field of another key changes.
     for (const Option& other : options())
       if (&other != &o && other.section == section && other.target.owner == &kOwner<Settings>) {
         EXPECT_TRUE(other.target.same(&changed, &absent)) << name_of(other);

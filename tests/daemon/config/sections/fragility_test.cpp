@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [fragility]: HAZUS' limits, medians of one's own, and every way to write it wrong.
+// Tests [fragility]: HAZUS' limits, custom medians, and every mistake.
 #include <algorithm>
 #include <utility>
 

@@ -187,7 +187,7 @@ TEST_F(AnswersTest, JudgesAShakeByItsReport) {
   EXPECT_EQ(answer(2).more.front().report, "event-20261124T000000Z");
   known_.report->color = EventColor::green;
   EXPECT_EQ(answer(2).state, AnswerState::good);
-  known_.newest = known_.strongest = nullptr;  // the page's server was started anew
+  known_.newest = known_.strongest = nullptr;  // the page's server was restarted
   EXPECT_EQ(answer(2).more.front().text,
             "The last strong motion was judged green: story 1 drifted by 2 %.");
   EXPECT_EQ(answer(2).more.front().since_us, 2'000'000);
@@ -228,12 +228,12 @@ TEST(ModelFit, ReportsWhenMostOfTheMotionIsUnexplainedUntilItEnds) {
   last(0.05, 30);
   EXPECT_FALSE(fit.finding());
   EXPECT_NEAR(fit.residual().value_or(0), 0.05, 1e-3);
-  last(0.9, 3);  // a moment is none
+  last(0.9, 3);  // a moment is not silence
   EXPECT_FALSE(fit.finding());
   last(0.8, 30);
   ASSERT_TRUE(fit.finding());
   EXPECT_NE(fit.finding()->text.find("does not fit"), std::string::npos);
-  e.reason = {2};  // what shows nothing says nothing
+  e.reason = {2};  // unobservable elements are not mentioned
   last(0.0, 100);
   EXPECT_TRUE(fit.finding());
   e.reason = {0};

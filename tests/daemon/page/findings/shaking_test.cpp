@@ -36,7 +36,7 @@ class ShakingTest : public ::testing::Test {
     for (double& accel : set.accel) accel += kOffset_mps2;
     return set;
   }
-  /// Swells within some seconds, as motion does.
+  /// Grows within some seconds, like real motion.
   static double size_at(double t) {
     return 0.25 * (1 + std::tanh((t - kFrom_s) / kSwell_s)) *
            (1 + std::tanh((kTo_s - t) / kSwell_s));
@@ -96,7 +96,7 @@ TEST_F(ShakingTest, ReportsNoShakeAtRestAndNoNumberForALostSensor) {
   EXPECT_FALSE(shake->over);
   EXPECT_TRUE(std::isnan(shake->peak.base_shear_n[0]));
   EXPECT_GT(shake->peak.base_shear_n[1], 0);
-  EXPECT_EQ(story_of(*shake).frame, 2);  // x1, the only one that can be measured and moves
+  EXPECT_EQ(story_of(*shake).frame, 2);  // x1, the only measured frame that moves
 }
 
 TEST_F(ShakingTest, KeepsTheStrongestBesideTheNewest) {

@@ -144,7 +144,7 @@ TEST(Metrics, OmitAndReportUnobservableValues) {
   expect_line(text, "framewatch_parameter_valid" + panel + "0");
   EXPECT_EQ(text.find("panel_stiffness_newtons_per_radian_meter{"), std::string::npos);
   expect_line(text, "framewatch_window_valid 1");
-  // A quiet estimator's last window is not told for ever.
+  // The last window of a silent estimator must not stay forever.
   give(metrics, "FRAMEWATCH_SERVICE", service(), 9 * kSecond_us);
   EXPECT_EQ(metrics.text(9 * kSecond_us, {}).find("framewatch_window_valid"), std::string::npos);
 }
@@ -217,7 +217,7 @@ TEST(Metrics, CountMessagesThatWaitForTheHub) {
   expect_line(text, "framewatch_uplink_acknowledged_timestamp_seconds 1700000000");
   expect_line(text, R"(framewatch_uplink_waiting{kind="event"} 3)");
   expect_line(text, "framewatch_uplink_trouble 1");
-  // An uplink that is gone does not look well because the daemon lives.
+  // A missing uplink must not look healthy because the daemon runs.
   give(metrics, "FRAMEWATCH_SERVICE", service_t{}, Metrics::kFresh_us + 1);
   expect_line(metrics.text(Metrics::kFresh_us + 1, {}), "framewatch_uplink_up 0");
 }

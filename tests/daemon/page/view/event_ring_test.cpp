@@ -37,7 +37,7 @@ TEST(EventRing, TellsASlowViewerWhatItLost) {
   ASSERT_EQ(ring.read(slow, begun, sizeof begun), sizeof begun);
   for (int i = 1; i < 100; ++i) ring.push("n", std::to_string(i));
   const std::string rest = all(ring, slow, 64);
-  // What was begun is finished; then comes how many are gone, then the newest.
+  // The viewer gets the rest of the current event, the number of lost ones, then the newest.
   EXPECT_EQ(rest,
             ": n\ndata: 0\n\nevent: dropped\ndata: {\"events\":98}\n\nevent: n\ndata: 99\n\n");
   EXPECT_EQ(slow.dropped, 98u);

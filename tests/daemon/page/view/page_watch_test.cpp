@@ -25,7 +25,7 @@ constexpr double kSecondsToTell = 4;  // from the drop to the event
 constexpr double kStep_s = 0.1, kDropAt_s = 30, kBackAt_s = 90, kEnd_s = 150, kDrop_ratio = 0.15;
 constexpr std::size_t kDropped = 1;
 
-/// Share of a window that ends at `end_s` in which the frame is softer.
+/// Returns the share of a window ending at `end_s` in which the frame is softer.
 double softer_share(double end_s, double length_s) {
   const double from = std::max(end_s - length_s, kDropAt_s), to = std::min(end_s, kBackAt_s);
   return std::max(0.0, to - from) / length_s;
@@ -49,7 +49,7 @@ window_estimate_t estimate_at(double end_s, double length_s, const std::vector<d
 
 class PageWatchTest : public ::testing::Test {
  protected:
-  /// Lengths of the windows that the configuration has, the main one first.
+  /// Returns the configured lengths of the windows, the main one first.
   std::vector<double> lengths() const {
     std::vector<double> out{config_.pipeline.options.window_s};
     for (const double s : config_.pipeline.options.other_windows_s) out.push_back(s);
@@ -84,7 +84,7 @@ TEST_F(PageWatchTest, NamesTheFrameThatLostStiffnessUntilItReturns) {
     EXPECT_EQ(e.place, table()[kDropped].name);
     EXPECT_EQ(e.kind, "stiffness_change");
     EXPECT_EQ(e.unit, "%");
-    // Once it is back, longer windows may still say so for a while, with an alarm of their own.
+    // After its return, longer windows may still raise an alarm for a while.
     if (static_cast<double>(e.time_us) < 1e6 * kBackAt_s) {
       EXPECT_EQ(e.id, 7);
       if (std::isfinite(e.value)) newest_value = e.value / 100;
@@ -99,7 +99,7 @@ TEST_F(PageWatchTest, NamesTheFrameThatLostStiffnessUntilItReturns) {
   EXPECT_NE(sized->message.find(" of its stiffness, give or take "), std::string::npos);
   for (const event_t* e : {&events.front(), &*sized}) {
     std::string found = finding_of(*e, config_).text;
-    found.pop_back();  // the sentence goes on
+    found.pop_back();  // the sentence continues
     EXPECT_EQ(e->message.substr(0, found.size() + 8), found + ", since ");
   }
   EXPECT_EQ(events.back().state, event_state::cleared);

@@ -26,14 +26,14 @@ namespace stored_history_test {
 using nlohmann::json;
 
 // Limits.
-constexpr double kLost = 0.01;  // of the motion: what was not yet on the disk, and the mean's error
+constexpr double kLost = 0.01;  // of the motion: samples not yet on the disk, and the mean's error
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 constexpr std::int64_t kAge_s = 3600;
 constexpr int kRate_hz = 100, kSeconds = 60,
-              kSeen_s = 40;  // kSeen_s: then a parameter is not shown
+              kSeen_s = 40;  // kSeen_s: after that, a parameter is not shown
 
-/// A minute of the table, its base moving, and what `framewatch run` keeps of it.
+/// A minute of the table on a moving base, as `framewatch run` stores it.
 class StoredHistoryTest : public testing::Test {
  protected:
   StoredHistoryTest() : config_(test::table_with_history(directory_.path("h"))) {
@@ -88,7 +88,7 @@ class StoredHistoryTest : public testing::Test {
     EXPECT_TRUE(notes.empty()) << notes.front();
     for (int flush = 0; flush < 20; ++flush) view.flush();  // a second
   }
-  /// What a viewer gets who joins now.
+  /// Returns the data that a viewer receives who joins now.
   static std::string joined(LiveView& view) {
     EventRing::Cursor cursor = view.join();
     std::string out(1 << 20, '\0');

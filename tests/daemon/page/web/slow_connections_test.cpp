@@ -33,13 +33,13 @@ using Clock = std::chrono::steady_clock;
 
 // Limits.
 constexpr int kSlow = 2000, kViewers = 200, kAgainAtOnce = 50;
-constexpr std::size_t kLongAnswer = 4 << 20;   // more than the kernel holds
-constexpr std::chrono::seconds kPatience{30};  // for what takes milliseconds
+constexpr std::size_t kLongAnswer = 4 << 20;   // more than the kernel buffers
+constexpr std::chrono::seconds kPatience{30};  // for actions that take milliseconds
 constexpr std::chrono::milliseconds kTick{20};
 
 constexpr std::chrono::seconds kAttack{4};
 
-/// Paths and what their answers hold.
+/// Paths and texts of their answers.
 constexpr std::array<std::pair<const char*, const char*>, 5> kAsked{{{"/healthz", "ok"},
                                                                      {"/metrics", "viewers 200"},
                                                                      {"/", "</html>"},
@@ -67,7 +67,7 @@ bool say(int socket, const std::string& text) {
          static_cast<ssize_t>(text.size());
 }
 
-/// What comes until the other side ends it, or until `last` has come, if it is given.
+/// Returns the bytes up to the end of the connection or, if `last` is given, up to that text.
 std::string rest(int socket, const std::string& last = {}) {
   std::string out;
   char part[4096];
@@ -84,14 +84,14 @@ bool comes_true(const Done& done) {
   return true;
 }
 
-/// A message that the page shows, with that text.
+/// Returns a message with that text, which the page shows.
 session_status_t refusal(const std::string& text) {
   session_status_t s{};
   s.refused = text;
   return s;
 }
 
-/// Does `work` again and again in a thread of its own.
+/// Repeats `work` in a thread.
 class Meanwhile {
  public:
   template <typename Work>
@@ -114,8 +114,7 @@ class Meanwhile {
   std::thread thread_;
 };
 
-/// Connections that send a byte now and then and never a whole request; those that are ended come
-/// back.
+/// Connections that send a byte now and then but never a whole request. Closed ones reconnect.
 class SlowConnections {
  public:
   SlowConnections(int port, int count) : port_(port) {
@@ -176,7 +175,7 @@ TEST_F(Served, AnswersAmongTwoThousandSlowConnections) {
   }
   RecordProperty("longest_ms", static_cast<int>(1e3 * longest_s));
   EXPECT_EQ(server_.viewers(), kViewers);
-  // Those who look on are not ended for others: what comes now reaches every one of them.
+  // Viewers stay connected: each one receives new data.
   send("FRAMEWATCH_SESSION", refusal("late"));
   for (const int s : viewers) {
     EXPECT_NE(rest(s, "late").find("late"), std::string::npos);
@@ -184,7 +183,7 @@ TEST_F(Served, AnswersAmongTwoThousandSlowConnections) {
   }
 }
 
-/// Nobody is waited for longer than a second, and the metrics are long.
+/// No answer may be delayed by more than a second, and the metrics are long.
 class HastyPage : public Served {
  protected:
   static WebSettings settings() {
@@ -258,7 +257,7 @@ TEST_F(HastyPage, ClosesAViewerThatReadsByteByByte) {
   ::close(s);
 }
 
-/// Two pages may be open.
+/// Allows two open pages.
 class SmallPage : public Served {
  protected:
   static WebSettings settings() {

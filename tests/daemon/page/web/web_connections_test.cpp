@@ -41,7 +41,7 @@ TEST(WebConnections, ReplaceTheOldestOfTheBusiestAddress) {
   EXPECT_EQ(numbers(w.opened(10, elsewhere(2), 0)), std::vector<int>{3});
   EXPECT_EQ(w.use().waiting, 8);
   EXPECT_EQ(w.use().crowded_out, 2);
-  // What is ended already takes no place, and is not ended again.
+  // An ended connection takes no place and is not ended again.
   EXPECT_TRUE(w.asked(2, 0).empty());
   EXPECT_EQ(w.use().answering, 0);
   w.closed(2);

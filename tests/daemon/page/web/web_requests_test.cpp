@@ -25,10 +25,10 @@ std::string with(const std::string& line, const std::string& headers) {
 struct Case {
   const char* what;
   std::string request;
-  const char* status;  ///< empty: ended without an answer
+  const char* status;  ///< empty: closed without an answer
 };
 
-/// The status of the answer; empty: there is none.
+/// Returns the status of the answer; empty if there is none.
 std::string status_of(const std::string& answer) {
   return answer.starts_with("HTTP/1.1 ") ? answer.substr(9, 3) : "";
 }
@@ -91,7 +91,7 @@ TEST_F(Served, RefusesForeignRequests) {
 }
 
 TEST_F(Served, RefusesBytesBehindARequest) {
-  // What a proxy takes for the body of the first.
+  // A proxy takes this for the body of the first request.
   for (const std::string& first :
        {get("/healthz"), with("GET /healthz", "Connection: keep-alive\r\n"),
         with("POST /baseline", "Content-Length: 60\r\n"),

@@ -81,7 +81,7 @@ TEST_F(Served, PassesSessionCommandsToTheRecorderAndAnswersBack) {
   gap.nrmse = {0.5};
   gap.floor = {0.125};
   send("FRAMEWATCH_GAP", gap);
-  // Both are there for a viewer that comes later.
+  // A later viewer gets both.
   const std::string events = ask(server_.port(), request("GET /events"), "\"floor\":[0.125]");
   EXPECT_NE(events.find("\"answered\":\"" + std::to_string(command->id) + "\""), std::string::npos);
   EXPECT_NE(events.find("\"refused\":\"not \\\"now\\\"\""), std::string::npos) << events;
@@ -95,7 +95,7 @@ TEST_F(Served, AnAcknowledgementContainsTheViewersAddress) {
   alarm.state = 1;
   alarm.kind = "gap";
   send("FRAMEWATCH_EVENT", alarm);
-  send("FRAMEWATCH_ACKNOWLEDGED", acknowledged_t{});  // framewatch run keeps them
+  send("FRAMEWATCH_ACKNOWLEDGED", acknowledged_t{});  // framewatch run keeps the acknowledgements
   const std::string answer =
       ask(server_.port(),
           request("POST /acknowledge?id=42", "Cookie: framewatch=0123456789abcdef\r\n"));

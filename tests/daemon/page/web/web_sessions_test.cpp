@@ -45,7 +45,7 @@ TEST(WebSessions, ServeOnlyReports) {
   EXPECT_FALSE(session_document("", "2026-11-21T15-00-00/report.html"));
 }
 
-/// A folder of sessions with one finished session "a", and a secret beside the folder.
+/// A folder with one finished session "a", and a secret file beside the folder.
 struct SessionsAndASecret {
   SessionsAndASecret() {
     std::filesystem::create_directories(sessions + "/a");
@@ -80,7 +80,7 @@ TEST(WebSessions, FollowNoLinks) {
   ASSERT_EQ(list.size(), 1u) << list;
   EXPECT_EQ(list[0]["test"], "mine");
   EXPECT_EQ(list[0]["report"], false);
-  // The folder itself may be reached by one, as systemd's state directory is.
+  // The folder itself may be a link, like systemd's state directory.
   fs::create_directory_symlink(s.sessions, s.directory.path("link"));
   EXPECT_TRUE(session_document(s.directory.path("link"), "a/session.json"));
 }
@@ -111,7 +111,7 @@ namespace web_event_reports_test {
 constexpr const char* kReport =
     R"({"verdict": "red", "reasons": ["story 1 drifted"], "start_us": 5000000, "end_us": 9000000})";
 
-/// Two reports, and secrets beside them, behind links, and under other names.
+/// Two reports, and secret files beside them, behind links, and under other names.
 class EventReportsTest : public ::testing::Test {
  protected:
   EventReportsTest() {

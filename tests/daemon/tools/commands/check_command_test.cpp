@@ -25,7 +25,7 @@ bool warns(const CheckReport& report, const std::string& part) {
   return false;
 }
 
-/// Exit status of the program; its output in `out`.
+/// Returns the exit status of the program; its output is in `out`.
 int run_check(const std::string& arguments, std::string& out) {
   const test::TemporaryDirectory directory;
   const std::string file = directory.path("out");

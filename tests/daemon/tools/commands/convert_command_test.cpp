@@ -32,7 +32,7 @@ class Convert : public testing::Test {
     arguments.out = path(out);
     return arguments;
   }
-  /// Exit 2, what is said on stderr, and no file more than before.
+  /// Expects exit 2, this message on stderr, and no new file.
   void expect_refused(const ConvertArguments& arguments, const std::string& rule) {
     const auto before = directory_.names();
     testing::internal::CaptureStderr();
@@ -298,7 +298,7 @@ TEST_F(Convert, DenoisesEveryChannelOfARecord) {
   testing::internal::CaptureStderr();
   ASSERT_EQ(convert(arguments), 0);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("p = 200, q = 5"), std::string::npos);
-  // THEN the first is as it was, and the second nearer to it
+  // THEN the first is unchanged, and the second is nearer to it
   std::vector<drivers::Problem> problems;
   const auto out = drivers::read_record(path("out.csv"), {}, problems);
   ASSERT_TRUE(out);

@@ -12,7 +12,7 @@ namespace implausible_records_test {
 class ImplausibleRecords : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return directory_.path(name); }
-  /// Converts text as rec.csv; what was said. The exit code must be `code`.
+  /// Converts text as rec.csv and returns the messages. The exit code must be `code`.
   std::string said(const std::string& text, int code, const std::string& config = "") {
     test::write_file(path("rec.csv"), text);
     std::filesystem::remove(path("rec.lcmlog"));

@@ -66,7 +66,7 @@ TEST(LayoutWarnings, NameTallOrSlenderFramesThatDoNotBend) {
   EXPECT_TRUE(warned("name", "name", "y"));
   EXPECT_FALSE(warned("[structure.design]", "[structure.design]\nkrx_nmprad = 3e12", "x"));
   EXPECT_TRUE(warned("[structure.design]", "[structure.design]\nkrx_nmprad = 3e12", "y"));
-  // Nine stories of 35 m in all: by their shape, along x alone of which the width is known.
+  // Nine stories of 3.5 m: judged by their shape along x, the only direction with a known width.
   const std::string lower = test::replaced(
       test::replaced(building(level(0) + level(9)), "stories = 10", "stories = 9"), "20.0", "8.0");
   const CheckReport r =

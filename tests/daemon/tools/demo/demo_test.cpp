@@ -52,7 +52,7 @@ struct Outcome {
   std::string printed;
 };
 
-/// What the view says after these messages, which it gets over LCM like any others.
+/// Returns the view's verdict after these messages, sent over LCM.
 Outcome outcome(const parameter_table_t* table, const window_estimate_t& estimate) {
   drivers::LcmProvider lcm("memq://");
   DemoView view(kTruth, false, false);

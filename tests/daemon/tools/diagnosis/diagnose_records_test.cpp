@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Records as a diagnosis reads them, the channels it uses of them, and why it refuses one.
+// Tests the records of a diagnosis: their channels, and reasons to refuse them.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -39,7 +39,7 @@ story = 1
 frame = "f"
 )";
 
-/// Instants that lead the simulation in, of a record whose motion begins at begin_s.
+/// Returns the instants that lead into the simulation of a record with motion from begin_s on.
 Eigen::Index lead_of_record(double begin_s, bool prescribed) {
   std::string text = "time_s,y,u\n";
   for (int i = 0; i < kSamples; ++i) {
@@ -60,8 +60,9 @@ Eigen::Index lead_of_record(double begin_s, bool prescribed) {
   return records.empty() ? -1 : records.front().samples.lead;
 }
 
-/// The force of a law depends on motion that is simulated from rest: of a record cut from the
-/// middle of a test it was wrong at the beginning (Silverbox: a gap of 0.84 instead of 0.67 %).
+/// The force of a law depends on motion simulated from rest. Without a lead it was wrong at the
+/// beginning of a record cut from the middle of a test (Silverbox: a gap of 0.84 instead of 0.67
+/// %).
 TEST(DiagnoseRecords, NeedALeadIfAComponentStartsInMotion) {
   EXPECT_EQ(lead_of_record(0, false), kSamples / 2);
   EXPECT_EQ(lead_of_record(3, false), 0);
@@ -71,8 +72,8 @@ TEST(DiagnoseRecords, NeedNoLeadForAPrescribedMotion) {
   EXPECT_EQ(lead_of_record(0, true), 0);
 }
 
-/// Of a record file the whole samples of a delay are taken off, as an acquisition takes them off
-/// the stamps; a fit that began with 0.5 s of delay found no way.
+/// Whole samples of a delay are removed from a record file, as an acquisition removes them from
+/// stamps. A fit that started 0.5 s late did not converge.
 TEST(DiagnoseRecords, AlignChannelsByTheirDelays) {
   constexpr double kRounding = 1e-8;
   std::string text = "time_s,ground,y\n";

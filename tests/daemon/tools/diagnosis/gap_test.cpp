@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The loop of issue 7: a gap is noticed live, its samples are stored, diagnose names what is
-// missing, the model is adopted while the program runs, and the gap is gone.
+// The loop of issue 7: a gap is noticed live, its samples are stored, diagnose names the missing
+// effect, the running program adopts the model, and the gap disappears.
 #include <algorithm>
 #include <filesystem>
 
@@ -24,7 +24,7 @@ namespace gap_test {
 
 constexpr double kSeconds = 240, kAdopted_s = 150;
 constexpr double kLargeGap = 0.15;  // before, of the learned linear model
-constexpr double kShrinks = 5;      // times, when the missing effect is in
+constexpr double kShrinks = 5;      // times, with the missing effect in the model
 
 const std::string kBuilding = R"([structure]
 name = "plane frame"
@@ -114,7 +114,7 @@ class GapLoop : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-/// Mean of the last ten.
+/// Returns the mean of the last ten.
 double late_gap(const std::vector<framewatch::gap_t>& gaps) {
   double sum = 0;
   const std::size_t count = std::min<std::size_t>(gaps.size(), 10);

@@ -24,7 +24,7 @@ std::string open(const InitReading& reading) {
   return out;
 }
 
-/// What the configuration of these answers says.
+/// Returns the configuration made of these answers.
 Config config_of(const std::map<std::string, std::string, std::less<>>& answers) {
   const InitReading reading = read(answers);
   EXPECT_EQ(open(reading), "");
@@ -122,7 +122,7 @@ TEST(BuildingToml, AModelStartsFromTheData) {
 TEST(BuildingToml, LcmNodesAreNumberedAsTheChannels) {
   std::map<std::string, std::string, std::less<>> answers{
       {"live", "lcm"}, {"stories", "1"}, {"bays", "0x0"}, {"heights", "3"}, {"mass", "1000"}};
-  const Config one = config_of(answers);  // one node a floor
+  const Config one = config_of(answers);  // one node per floor
   EXPECT_EQ(one.sources[0].sensor_node, 0);
   EXPECT_EQ(one.sources[1].sensor_node, 0);
   EXPECT_EQ(one.sources[3].sensor_node, 1);

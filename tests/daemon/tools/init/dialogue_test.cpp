@@ -14,7 +14,7 @@
 namespace framewatch::daemon {
 namespace dialogue_test {
 
-/// A person who types these lines, and what is said to them.
+/// A person who types these lines, and the program's output.
 class Person {
  public:
   std::optional<BuildingPlan> answer(const std::vector<std::string>& lines,
@@ -52,7 +52,7 @@ TEST(InitDialogue, AsksAgainAfterAWrongAnswerAndLetsEveryAnswerChange) {
   Person person;
   const auto plan =
       person.answer({"none", "lcm", "", "three", "3", "x", "", "3.5,3", "4,3,3", "18 t", "", "",
-                     "4",  // stories: then the heights do not fit any more
+                     "4",  // stories: the heights no longer fit
                      "2", "4,3.5", ""});
   ASSERT_TRUE(plan) << person.said;
   EXPECT_EQ(plan->structure.story_height, (std::vector<double>{4, 3.5}));
@@ -96,7 +96,7 @@ TEST(InitDialogue, AsksForColumnsWithoutAPlace) {
   test::write_file(record, "time_s,base,acc2,acc1,spare\n0,0,0,0,0\n0.005,0,0,0,0\n");
   Person person;
   const auto plan = person.answer({record, "", "", "2", "x", "", "3", "900", "none", "acc7", "acc1",
-                                   "acc2",  // floor 1: no such column, then one
+                                   "acc2",  // floor 1: first a missing column, then an existing one
                                    ""});
   ASSERT_TRUE(plan) << person.said;
   EXPECT_EQ(plan->channels[0].column.name, "base");
@@ -109,7 +109,7 @@ TEST(InitDialogue, AsksForColumnsWithoutAPlace) {
             std::string::npos)
       << person.said;
   EXPECT_NE(person.said.find("left out         spare"), std::string::npos) << person.said;
-  // And changed once more at the end: the two are exchanged.
+  // At the end the two are exchanged.
   const auto changed = person.answer({record, "", "", "2", "x", "", "3", "900", "none", "acc1",
                                       "acc2", "10", "acc2=1:y1", "acc1", ""});
   ASSERT_TRUE(changed) << person.said;

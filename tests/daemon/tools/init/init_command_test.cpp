@@ -45,7 +45,7 @@ TEST_F(InitCommand, WritesWhatCheckAccepts) {
   EXPECT_EQ(shell("$F check building.toml").status, 0);
 }
 
-/// `script` gives it a terminal.
+/// Runs on a terminal of `script`.
 TEST_F(InitCommand, AsksOnATerminal) {
   const ShellResult said = shell(
       "printf 'none\\nlcm\\n\\n2\\nx\\n\\n3.5\\n18 t\\n\\n\\n\\n' | "

@@ -14,11 +14,11 @@ namespace framewatch::daemon {
 namespace new_users_way_test {
 
 // Limits.
-constexpr double kMost_s = 300;           // of the four commands, on a busy machine
-constexpr double kStiffnessError = 0.03;  // of the mean of all windows
+constexpr double kMost_s = 300;           // for the four commands, on a busy machine
+constexpr double kStiffnessError = 0.03;  // of the mean over all windows
 
-/// Two stories, one bay each way, shaken for a minute; its stiffnesses differ from the rule of
-/// thumb that init starts from by 1.5 to 3 times. Made into what a logger writes.
+/// Two stories, one bay each way, shaken for a minute. Its stiffnesses differ by 1.5 to 3 times
+/// from the rule of thumb with which init starts. Written as a logger's file.
 constexpr const char* kShaken = R"(config = "truth.toml"
 duration_s = 60
 seed = 7
@@ -49,7 +49,7 @@ class NewUsersWay : public testing::Test {
  protected:
   test::ShellResult shell(const std::string& line) { return test::shell(directory_, line); }
 
-  /// logger.csv, its columns called as `sed` makes them of base-x, F1-Y1, ...
+  /// Writes logger.csv, with columns that `sed` renames from base-x, F1-Y1, ...
   void log_as(const std::string& sed) {
     test::write_file(directory_.path("shaken.toml"), kShaken);
     const test::ShellResult made =
@@ -59,7 +59,7 @@ class NewUsersWay : public testing::Test {
     ASSERT_EQ(made.status, 0) << made.err;
   }
 
-  /// Mean of a column of a CSV file, where it has a value.
+  /// Returns the mean of a column of a CSV file over rows with a value.
   double mean(const std::string& name) {
     std::istringstream lines(test::read_file(directory_.path("estimates.csv")));
     std::string line, cell;

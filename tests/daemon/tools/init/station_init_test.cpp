@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Channels of a building from the headers of its network's files.
+// Tests channels of a building from the headers of its network's files.
 #include <string>
 
 #include <fmt/core.h>
@@ -106,7 +106,7 @@ TEST(StationLayout, AsksForDataThatHeadersLack) {
 class StationInit : public testing::Test {
  protected:
   ShellResult shell(const std::string& line) { return test::shell(directory_, line); }
-  /// A file of one channel on a floor, with this azimuth.
+  /// Writes a file of one channel on a floor, with this azimuth.
   void station_file(int number, const std::string& place, const std::string& azimuth) {
     test::CosmosChannel channel;
     channel.number = number;
@@ -173,7 +173,7 @@ TEST_F(StationInit, AsksForMissingPlacesByChannelName) {
   EXPECT_EQ(shell(line + "--plan 24x12 --channel NP.8040.03.HNN=2").status, 0);
 }
 
-/// The station of 53 channels whose configuration configs/atwood_np8040.toml was written by hand.
+/// The station of 53 channels of the hand-written configuration configs/atwood_np8040.toml.
 TEST_F(StationInit, MatchesTheHandWrittenAtwoodBuilding) {
   FRAMEWATCH_DATA_OR_SKIP(folder, "atwood_np8040_anchorage2018");
   const ShellResult said =

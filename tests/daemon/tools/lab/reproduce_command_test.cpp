@@ -79,7 +79,7 @@ TEST_F(Reproduce, RefusesToOverwriteAFile) {
   EXPECT_EQ(test::read_file(directory_.path("out")), "mine");
 }
 
-/// A row whose k is twice its limit and whose intervals hold in 50 %; the rest is well.
+/// A row with twice the limit of k and intervals that hold in 50 %; the rest is good.
 Reproduction with_broken_k() {
   AccuracyRow row{"Table 1, 1 %", {}, {}, {}};
   for (std::size_t kind = 0; kind < 4; ++kind) {
@@ -110,7 +110,7 @@ TEST(Promises, AreJudgedByTheirNumbers) {
     ++broken;
     EXPECT_NE(promise.what.find("k"), std::string::npos) << promise.what;
   }
-  // THEN exactly limit, bound and coverage of k are broken; fewer seeds judge nothing
+  // THEN exactly limit, bound and coverage of k are broken; with fewer seeds nothing is judged
   EXPECT_EQ(broken, 3);
   all.seeds = kSeedsToJudge - 1;
   EXPECT_TRUE(promises(all).empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What has been seen of CAN is part of a state: whoever goes on from it gives the same samples.
+// The state of CAN is part of a saved state: a run that continues from it gives the same samples.
 #include <algorithm>
 #include <random>
 #include <tuple>
@@ -21,7 +21,7 @@ constexpr int kCuts = 40;
 
 using Samples = std::vector<std::tuple<int, std::int64_t, double>>;
 
-/// Losses, frames twice, overtaken and late, outages, boot-ups.
+/// Losses, repeated, overtaken and late frames, outages, boot-ups.
 std::vector<BusFrame> eventful(const daemon::Config& config, unsigned seed) {
   std::vector<BusFrame> out;
   std::mt19937 random(seed);

@@ -31,7 +31,7 @@ class Diff : public testing::Test {
   static void TearDownTestSuite() { delete directory_; }
   static std::string a() { return directory_->path("a.lcmlog"); }
 
-  /// A copy with every estimate changed or, when `change` says false, left out.
+  /// Writes a copy with every estimate changed or, if `change` returns false, left out.
   template <typename Change>
   std::string changed(Change change) {
     const std::string to = directory_->path("b.lcmlog");

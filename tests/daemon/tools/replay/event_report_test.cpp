@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A shaken building through the whole program: the report after it, the event that names it, and
-// the same bytes every time.
+// Runs a shaken building through the whole program: the report, the event that names it, and the
+// same bytes every time.
 #include <gtest/gtest.h>
 
 #include <framewatch/event_t.hpp>
@@ -20,7 +20,7 @@ namespace event_report_test {
 
 constexpr double kShaken_s = 40, kSeconds = 80, kDrop_s = 20;
 
-/// The demo's table, shaken for 40 s and left alone; one frame loses 25 %.
+/// The demo's table, shaken for 40 s and then at rest; one frame loses 25 %.
 class EventReportReplay : public testing::Test {
  protected:
   static void SetUpTestSuite() {

@@ -22,7 +22,7 @@ Config table_building() {
   return *load_config(test::table_config(), problems);
 }
 
-/// Windows of one parameter that is `value` and then, from window `from` on, `other`.
+/// Returns windows of one parameter that is `value`, and `other` from window `from` on.
 EstimateSeries series_of(const estimator::ParameterTable& table, double value, int from,
                          double other) {
   EstimateSeries series(table, true);

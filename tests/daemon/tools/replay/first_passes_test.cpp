@@ -23,7 +23,7 @@ constexpr double kMaxRead = 0.8;      // share of the archive
 
 class FirstPassesTest : public test::ReplayFixture {
  protected:
-  /// The table's configuration with a design so many times as stiff.
+  /// Returns the table's configuration with a design that is `times` as stiff.
   std::string design(double factor) {
     std::string text = test::read_file(test::table_config());
     const auto replace = [&](const std::string& from, const std::string& to) {
@@ -43,7 +43,7 @@ class FirstPassesTest : public test::ReplayFixture {
     return name;
   }
 
-  /// Sensor time of the end of the first window with a value, s.
+  /// Returns the sensor time of the end of the first window with a value, s.
   double first_value_s(const std::string& config, bool one_pass) {
     ReplayArguments a;
     a.config = config;
@@ -78,7 +78,7 @@ TEST_F(FirstPassesTest, TheSameInputGivesTheSameBytesAndOneLine) {
   EXPECT_NE(once.err.find(" passes\n"), std::string::npos) << once.err;
 }
 
-TEST_F(FirstPassesTest, ARecordWithoutMotionStartsFromTheDesign) {
+TEST_F(FirstPassesTest, ReportsTooLittleMotionToTuneOn) {
   std::string still = test::read_file(csv());
   still = still.substr(0, still.find('\n') + 1);
   const auto columns = std::count(still.begin(), still.end(), ',');

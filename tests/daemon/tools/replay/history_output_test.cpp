@@ -16,7 +16,7 @@
 namespace framewatch::daemon {
 namespace history_output_test {
 
-/// Every row of a table, but for what depends on when it was committed.
+/// Returns every row of a table, without columns that depend on the time of the commit.
 std::vector<std::string> rows_of(const std::string& database, const std::string& table) {
   SqliteFile file;
   EXPECT_TRUE(file.open_to_read(database));
@@ -40,7 +40,7 @@ class HistoryOutputTest : public test::ReplayFixture {
  protected:
   HistoryOutputTest() : config_(test::table_with_history(path("h"))) {}
 
-  /// The messages of the recorded test.
+  /// Returns the messages of the recorded test.
   void estimate(const MessageSink& sink) {
     Estimation estimation(config_, sink);
     ReplaySurvey survey(config_, false);

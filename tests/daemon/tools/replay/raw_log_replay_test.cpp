@@ -25,7 +25,7 @@
 namespace framewatch::daemon {
 namespace raw_log_replay_test {
 
-/// What a history stored of the table's test, as one raw log.
+/// Returns the raw log that a history stores of the table's test.
 class RawLogReplay : public test::ReplayFixture {
  protected:
   RawLogReplay() : config_(test::table_with_history(path("h"))) {
@@ -47,7 +47,7 @@ class RawLogReplay : public test::ReplayFixture {
 
   std::string raw_log() const { return raw_logs(raw_folder(path("h"))).at(0).path; }
 
-  /// The raw log with every message changed or, when `change` says false, left out.
+  /// Writes the raw log with every message changed or, if `change` returns false, left out.
   template <typename Change>
   std::string changed(Change change) const {
     const std::string out = path("changed.lcmlog");

@@ -27,7 +27,7 @@ constexpr int kEvents = 10;
 constexpr int kFuzzedLogs = 300;
 constexpr unsigned kSeed = 6;
 
-/// The ten events of recipes.md, section 2: one node, a sample every 10 ms.
+/// Returns the ten events of recipes.md, section 2: one node, a sample every 10 ms.
 std::string ten_events() {
   const TemporaryDirectory directory;
   LcmLogWriter writer;
@@ -133,7 +133,7 @@ TEST(Repair, EveryDamageCostsOnlyTheEventsItHits) {
     ASSERT_EQ(r.report["damage"].size(), 1u) << c.name << r.report;
     const auto& damage = r.report["damage"][0];
     EXPECT_EQ(damage["byte"], c.offset) << c.name;
-    if (c.offset >= at(9)) continue;  // nothing after it says how much was lost
+    if (c.offset >= at(9)) continue;  // nothing after it shows how much was lost
     EXPECT_EQ(damage["events"], c.lost.size()) << c.name << damage;
     if (!c.lost.empty()) {
       EXPECT_EQ(damage["after_us"], 30'000) << c.name;
@@ -162,7 +162,7 @@ TEST(Repair, AFuzzedLogNeverLosesAnUntouchedEventAndRepairsOnce) {
       touched.push_back(static_cast<int>(at / kEventBytes));
     }
     const Repaired r = repaired(bytes);
-    if (r.bytes.empty()) continue;  // whole: what was hit were payload bytes
+    if (r.bytes.empty()) continue;  // whole: only payload bytes were hit
     for (const int event : all_but(touched))
       EXPECT_NE(std::find(r.intact.begin(), r.intact.end(), event), r.intact.end())
           << "run " << run << " lost event " << event;
@@ -170,8 +170,8 @@ TEST(Repair, AFuzzedLogNeverLosesAnUntouchedEventAndRepairsOnce) {
   }
 }
 
-/// 2 MB of which every 64 bytes look like an event that reaches nearly to the end, after one that
-/// is whole; it took hours.
+/// After one whole event, 2 MB in which every 64 bytes look like an event that reaches nearly to
+/// the end. Reading it took hours.
 std::string crafted_log() {
   constexpr std::size_t kBytes = 2'000'000;
   std::string log = ten_events().substr(0, kEventBytes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [watch] through the whole program: learning, events, baseline files, a restart.
+// Runs [watch] through the whole program: learning, events, baseline files, a restart.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -139,7 +139,7 @@ TEST_F(WatchedTable, ReportsEveryProblemOfABaselineFile) {
   watch("bad_config.toml", "baseline = \"bad.toml\"\nalarms_per_year = 0\n");
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(load_config(path("bad_config.toml"), problems));
-  ASSERT_EQ(problems.size(), 1U);  // the configuration's own come first
+  ASSERT_EQ(problems.size(), 1U);  // the configuration's names come first
   EXPECT_NE(problems[0].message.find("alarms_per_year"), std::string::npos);
   watch("bad_config.toml", "baseline = \"bad.toml\"\n");
   EXPECT_FALSE(load_config(path("bad_config.toml"), problems));

@@ -25,7 +25,7 @@ namespace framewatch::daemon {
 namespace report_command_test {
 
 // Limits.
-constexpr double kStageError_s = 1.0;     // of the moment the shaking stops, known to half a second
+constexpr double kStageError_s = 1.0;     // of the end of the shaking, known to half a second
 constexpr double kDynamicError = 0.03;    // of the mean stiffness ratio, from one mode
 constexpr double kLoopSlopeError = 0.02;  // of the slope through a loop
 
@@ -39,7 +39,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// A virtual test, shaken for 25 s and left alone for 15 s, made once for all cases here.
+/// A virtual test, shaken for 25 s and at rest for 15 s, made once for all cases.
 struct Session {
   std::string directory, raw, estimates;
 
@@ -111,8 +111,8 @@ TEST(SessionReport, FindsForcedAndFreeVibration) {
 TEST(SessionReport, ReferenceDynamicFollowsTheFundamentalFrequencies) {
   const SessionReport r = session().evaluated();
   ASSERT_EQ(r.transfer.size(), 2u);
-  // The truth's frames are stiffer than the drawings' along x and softer along y in the mean; what
-  // the ratio must be is that of the models' lowest natural frequencies.
+  // The true frames are on average stiffer than the drawings along x and softer along y. The
+  // expected ratio is that of the models' lowest natural frequencies.
   const estimator::Structure& s = r.config->pipeline.structure;
   const estimator::ParameterTable table(s);
   Eigen::VectorXd identified(table.size());

@@ -18,7 +18,7 @@ struct Session {
   SessionEstimates estimates;
 };
 
-/// The base and floors 2, 4 and 6 of six have channels; nothing was identified.
+/// The base and floors 2, 4 and 6 of six have channels; no parameter is identified.
 Session six_stories() {
   TallTrial trial;
   trial.stories = 6;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A frame loses 15 % in the middle of a session: what the report says first, and that nothing in it
-// mixes the building before with the building after.
+// A frame loses 15 % in the middle of a session. The report must start with it and keep the
+// building before and after apart.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ constexpr double kSeconds = 60, kChange_s = 20, kLost = 0.15;
 constexpr double kTimeError_s = 1, kModeError = 0.06;
 const std::string kChanged = "kx_1_y2";
 
-/// A shaken minute of the demo's building, evaluated; change: whether the frame loses stiffness.
+/// A shaken minute of the demo's building, evaluated. change: true if the frame loses stiffness.
 struct Session {
   explicit Session(bool change) {
     const std::string configs = std::string(FRAMEWATCH_SOURCE_DIR) + "/configs/";
@@ -130,7 +130,7 @@ TEST(SessionVerdict, ModesArePairedByShape) {
     const std::vector<double> identified = hz(theta);
     for (const TransferFunction& t : after ? r.transfer_after : r.transfer) {
       EXPECT_GT(t.mac, 0.8);
-      // The same mode of both: order and shape of this building's modes are those of its drawings.
+      // Order and shape of this building's modes match its drawings.
       std::size_t mode = 0;
       for (std::size_t m = 0; m < design.size(); ++m)
         if (std::abs(design[m] - t.model_mode_hz) < std::abs(design[mode] - t.model_mode_hz))
@@ -141,8 +141,8 @@ TEST(SessionVerdict, ModesArePairedByShape) {
   }
 }
 
-/// The changed session turned round: the frame is stiffer after the change. weaker: the errors of
-/// the windows after it, times these.
+/// Reverses the changed session in time: the frame is stiffer after the change. weaker: factor on
+/// the errors of later windows.
 SessionReport grown(double weaker) {
   SessionReport r = changed().report;
   const std::size_t p = changed().index(kChanged);
@@ -220,7 +220,7 @@ TEST(SessionVerdict, ReportsAChangeKnownOnlyFromAnEvent) {
   EXPECT_EQ(session_changes(r.estimates).size(), 1u);
 }
 
-/// Twenty plane stories with four channels, whose model was told to fit as `word` says.
+/// Twenty plane stories with four channels, whose model fit is described by `word`.
 SessionReport tall(std::int32_t word, double bending_nmprad) {
   SessionReport r;
   r.config.emplace();

@@ -106,8 +106,8 @@ TEST(RestLevel, FollowsAnOffsetButNotTheMotion) {
   EXPECT_GT(peak, 0.9);
 }
 
-/// A blow of 20 ms on one of three sensors of a frame that rings at 3 Hz with 1 % damping after it;
-/// the others feel half of the ringing.
+/// A blow of 20 ms on one of three sensors of a frame that then rings at 3 Hz with 1 % damping.
+/// The others feel half of the ringing.
 std::vector<TapTest::Tap> taps_of(const std::vector<std::pair<int, double>>& blows_mps2,
                                   double share = 0.5) {
   TapTest test(3, kRate_hz);

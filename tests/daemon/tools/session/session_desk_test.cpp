@@ -23,7 +23,7 @@ namespace session_desk_test {
 struct DeskBench : test::RecorderBench {
   DeskBench() { config.commands.directory = directory.path("commands"); }
 
-  /// What the recorder answers, while it looks after its desk.
+  /// Runs the recorder's desk and returns its answers.
   CommandAnswer give(SessionDesk& desk, const CommandPacket& command) const {
     auto answer = std::async(std::launch::async, give_command, config, "record", command);
     while (answer.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) desk.poll();

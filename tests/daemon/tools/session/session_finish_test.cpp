@@ -60,7 +60,7 @@ TEST(FinishSession, WritesReportAndOtherFormatsInStages) {
     EXPECT_GT(fs::file_size(folder + "/" + file), 100u) << file;
   for (const char* name : {"raw.csv", "raw.mat", "estimates.csv", "estimates.mat"})
     EXPECT_TRUE(fs::exists(folder + "/" + name)) << name;
-  // The stages together are the raw log.
+  // The joined stages equal the raw log.
   std::size_t samples = 0;
   for (const auto& file : fs::directory_iterator(folder))
     if (file.path().filename().string().starts_with("stage-"))
@@ -91,7 +91,7 @@ TEST(FinishSession, KeepsTheLogIfTheReportFails) {
   ASSERT_TRUE(session) << error;
   EXPECT_FALSE(session->finishing.empty());
   EXPECT_EQ(session->report, "");
-  // Later, with a disk.
+  // Later, with a working disk.
   EXPECT_EQ(finish_session({test::table_config(), folder, "", false, false, false, true, true}), 0);
   EXPECT_TRUE(fs::exists(folder + "/report.html"));
   const auto again = read_session_file(folder + "/session.json", error);

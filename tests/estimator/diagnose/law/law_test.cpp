@@ -58,7 +58,7 @@ TEST(Law, ForcesMatchTheFormulas) {
         << static_cast<int>(c.law.form) << " at " << c.d << ", " << c.v << ", " << c.t;
 }
 
-TEST(Law, ActsOnlyAtItsElement) {
+TEST(Law, OnlyElementLawsHaveAForceHere) {
   for (const LawForm form :
        {LawForm::power, LawForm::saturating, LawForm::hysteresis, LawForm::sliders,
         LawForm::asymptotic, LawForm::pinched, LawForm::slip_lock, LawForm::slack,

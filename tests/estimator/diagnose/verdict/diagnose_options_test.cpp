@@ -106,7 +106,7 @@ TEST(DiagnoseOptions, ResultDoesNotDependOnTheOrderOfTheWork) {
   for (std::size_t i = 0; i < a.map.size(); ++i) EXPECT_EQ(a.map[i].place, b.map[i].place);
 }
 
-TEST(Diagnose, RefusesAnEmptyListOfSegments) {
+TEST(Diagnose, IsUnexplainedWithoutSegments) {
   const Diagnosis d = diagnosed({});
   EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_NE(d.reason.find("cannot be fitted"), std::string::npos);

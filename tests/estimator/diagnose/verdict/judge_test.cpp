@@ -113,7 +113,7 @@ TEST(Judge, CallsRecordsThatFitOnlySeparatelyDifferentBuildings) {
   EXPECT_EQ(d.reason, "known");
 }
 
-TEST(Judge, CallsTheRestAfterALinearEffectPartlyExplained) {
+TEST(Judge, AnApproximateLinearEffectExplainsOnlyPart) {
   Diagnosis d;
   d.ratio_before = 101;
   d.ratio_after = 1.2;

@@ -115,7 +115,7 @@ TEST(GroupAccuracy, IsPredictedFromTheDesign) {
   EXPECT_NEAR(std::exp(damping), 1, 0.3);
 }
 
-/// The same motion on every floor, read by axes that are on their frames, or at a place in plan.
+/// The same motion on every floor, read by axes on frames or at places in plan.
 PipelineConfig everywhere(const TallRecord& record, bool at_places) {
   PipelineConfig config = record.config;
   config.options.self_tune = false;
