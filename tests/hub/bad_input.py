@@ -61,9 +61,9 @@ class BadInput:
                                                           "Fw-Encoding": "zstd"})
         self.publish(client, "c1", row(9))
         client.round_trip()
-        self.must(until(lambda: self.events_of("c1") >= 1 and "zstd" in self.reasons()), "a good event passes six bad ones")
+        self.must(until(lambda: self.events_of("c1") >= 1 and "zstd" in self.reasons()), "a good event arrives after six bad ones")
         unknown = self.postgres.ask("SELECT count(*), min(type) FROM unknown")
-        self.must(unknown == "1|event_t", f"a foreign fingerprint is kept for later, and stops nothing ({unknown})")
+        self.must(unknown == "1|event_t", f"a message with an unknown fingerprint is kept for later and stops no other ({unknown})")
         said = self.reasons()
         for reason in ("its key names c2", "its key does not match its content", "its key (Nats-Msg-Id) is missing"):
             self.must(reason in said, f"refused: {reason}")
@@ -85,7 +85,7 @@ class BadInput:
         self.publish(client, "c3", lcm_event.event(99, 2**62))
         self.publish(client, "c3", lcm_event.event(100, -(2**62)))
         client.round_trip()
-        self.must(until(lambda: self.events_of("c3") == 8), "so are those of the year 148 000")
+        self.must(until(lambda: self.events_of("c3") == 8), "events of the year 148 000 are stored too")
 
     def flood(self):
         """With one worker, whose count is exact."""
@@ -106,8 +106,8 @@ class BadInput:
         told = self.postgres.ask("SELECT name, sum(messages) FROM flooding JOIN building ON building.id = building GROUP BY 1")
         hours = self.postgres.number("SELECT count(DISTINCT hour) FROM flooding")
         # If the hour ends during the flood, the count starts again.
-        self.must(told == f"c4|{BEYOND}" or hours > 1, f"what is beyond {FLOOD} an hour is counted, not stored ({told})")
-        self.must(self.events_of("c4") == FLOOD or hours > 1, f"{self.events_of('c4')} events of who floods are stored")
+        self.must(told == f"c4|{BEYOND}" or hours > 1, f"messages beyond {FLOOD} an hour are counted but not stored ({told})")
+        self.must(self.events_of("c4") == FLOOD or hours > 1, f"{self.events_of('c4')} events of the flooding building are stored")
 
     def operator(self, subject, request=b""):
         client = Client(self.hub.client[0], self.hub.certificates, "operator", 20)
@@ -132,7 +132,7 @@ class BadInput:
         now_us = int(time.time() * 1e6)
         answer = page.request("fw.down.c6.raw", json.dumps({"from_us": now_us - 10_000_000, "to_us": now_us}).encode(),
                               {"Fw-Who": "Ada", "Fw-Request": "raw-1", "Fw-Until": int(time.time()) + 60})
-        self.must(answer == b'{"ok":true}', f"raw samples are asked for ({answer})")
+        self.must(answer == b'{"ok":true}', f"the request for raw samples is accepted ({answer})")
         time.sleep(10)
         number = one.add_events(1)[0]
         one.until_acknowledged()
@@ -141,8 +141,8 @@ class BadInput:
         self.operator("$JS.API.STREAM.PURGE.FW_RAW")
         self.workers.start(2)
         whole = "SELECT count(*) FROM raw_piece WHERE request = 'raw-1' HAVING count(*) = max(pieces)"
-        self.must(until(lambda: self.postgres.number(whole) > 0, 180), "when there is room they come, all of them")
-        self.must(until(lambda: self.events_of("c6") > number), "events passed them")
+        self.must(until(lambda: self.postgres.number(whole) > 0, 180), "all pieces arrive when there is room")
+        self.must(until(lambda: self.events_of("c6") > number), "events arrived before them")
         one.samples.end()
         one.stop_run()
         one.stop()
@@ -170,7 +170,7 @@ class BadInput:
             with open(log) as file:
                 print(file.read()[-1000:])
         time.sleep(3)
-        self.must(not one.acknowledged_keys(), "nothing passes with it")
+        self.must(not one.acknowledged_keys(), "no message passes with it")
         os.replace(f"{at}.good", at)
         begin = time.monotonic()
         one.until_acknowledged(180)

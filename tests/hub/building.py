@@ -46,7 +46,7 @@ class Building:
         if history:
             self.start_run()
             if not self.wait_for_history():
-                raise RuntimeError(f"{name}: run makes no history")
+                raise RuntimeError(f"{name}: run creates no history")
             self.stop_run()
 
     def start_run(self):

@@ -79,7 +79,7 @@ class Cost:
         folder = self.hub.certificates
         begin = time.monotonic()
         self.hub.enroll("b0")
-        print(f"  one building enrolled in {time.monotonic() - begin:.2f} s, servers told")
+        print(f"  one building enrolled in {time.monotonic() - begin:.2f} s, servers reloaded")
         with open(f"{folder}/more.ext", "w") as file:
             file.write("basicConstraints=critical,CA:FALSE\nkeyUsage=critical,digitalSignature\n"
                        "extendedKeyUsage=clientAuth\n")

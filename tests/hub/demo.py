@@ -132,7 +132,7 @@ def inside(a, postgres):
     begin, host_us = time.monotonic(), time.time() * 1e6
     say(f"\n  Open http://127.0.0.1:{a.port}/?token={token}\n")
     say(f"The ground moves weakly. After {QUAKE_S / a.speed:.0f} s there is an earthquake, and the hospital in Kobe loses 15 % of "
-        f"one frame\n({PARAMETER}); nobody has told the hub. Time runs {a.speed:g} times as fast as a clock.")
+        f"one frame\n({PARAMETER}); the hub is not told. Time runs {a.speed:g} times as fast as a clock.")
     return watch(a, lambda *words: page.ask(token, *words), begin, host_us)
 
 
@@ -153,12 +153,12 @@ def watch(a, ask, begin, host_us):
             quakes = ask("earthquakes.json?days=2") or []
             if quakes:
                 quake_us = quakes[0]["time_us"]
-                say(f"{now / a.speed:4.0f} s  {quakes[0]['buildings']} buildings shook together; all are asked for their minutes")
+                say(f"{now / a.speed:4.0f} s  {quakes[0]['buildings']} buildings shook together; the hub requests minutes from all")
                 ask(f"command?building=all&verb=minutes&from_us={quake_us - 600_000_000}&to_us="
                          f"{quake_us + 3_600_000_000}", "POST")
                 asked = True
     if not asked:
-        say("no earthquake was found by the hub: the time of the scenario is taken")
+        say("the hub found no earthquake; using the time of the scenario")
         quake_us = int(host_us + QUAKE_S * 1e6)
     return table(ask, quake_us, seen)
 
@@ -173,25 +173,25 @@ def table(ask, quake_us, seen):
     if not result or "buildings" not in result:
         say("the page does not answer")
         return 1
-    say(f"\n{'building':10} {'in truth':18} {'largest loss that is seen':34} {'compared':>8}  overview")
+    say(f"\n{'building':10} {'true loss':18} {'largest loss found':34} {'compared':>8}  overview")
     for one in result["buildings"]:
         worst = one.get("worst")
-        loss = "nothing of the time is known"
+        loss = "no estimates from that time"
         if one["result"] == "loss":
             loss = f"{worst['parameter']} {100 * worst['ratio']:+.1f} % +- {100 * worst['std_error']:.2f} %"
         elif one["result"] == "none":
-            loss = "none that is significant"
+            loss = "no significant loss"
         elif one["result"] == "not_observable":
             loss = "not observable"
-        truth = f"{PARAMETER} {100 * (FACTOR - 1):+.0f} %" if one["name"] == DAMAGED else "whole"
+        truth = f"{PARAMETER} {100 * (FACTOR - 1):+.0f} %" if one["name"] == DAMAGED else "none"
         say(f"{one['name']:10} {truth:18} {loss:34} {one['compared']:8}  {seen.get(one['name'], (0, 'well'))[1]}")
     if journal:
-        say(f"command minutes to {journal[-1]['buildings']} buildings: {journal[-1]['done']} obeyed")
+        say(f"command minutes to {journal[-1]['buildings']} buildings: {journal[-1]['done']} carried out")
     first = result["buildings"][0]
     good = (first["name"] == DAMAGED and first["result"] == "loss" and first["worst"]["parameter"] == PARAMETER and
             all(one["result"] == "none" for one in result["buildings"][1:]))
-    say("the damaged building stands first, and no other is said to be damaged" if good else
-        "NOT what it should be: the damaged building first, and no other")
+    say("Result: the damaged building is first, and no other shows damage." if good else
+        "WRONG RESULT: the damaged building should be first, and no other should show damage.")
     return 0 if good else 1
 
 
@@ -241,17 +241,17 @@ def outside(a):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program")
-    parser.add_argument("--seconds", type=int, default=520, help="of sensor time")
+    parser.add_argument("--seconds", type=int, default=520, help="duration in sensor time")
     parser.add_argument("--speed", type=float, default=3, help="sensor time over clock time")
-    parser.add_argument("--port", type=int, default=8090, help="of the page")
+    parser.add_argument("--port", type=int, default=8090, help="port of the page")
     parser.add_argument("--keep", help="folder for logs and configurations")
     parser.add_argument("--inside", help=argparse.SUPPRESS)
     a = parser.parse_args()
     if why := missing():
-        print(f"demo --fleet: {why}: deploy/install-deps --with fleet installs what it takes", file=sys.stderr)
+        print(f"demo --fleet: {why}: install it with deploy/install-deps --with fleet", file=sys.stderr)
         return 2
     if not os.path.exists(f"{os.path.dirname(os.path.abspath(a.program))}/framewatch-fleet"):
-        print("demo --fleet: framewatch-fleet is not built: deploy/install-deps --with fleet, then again", file=sys.stderr)
+        print("demo --fleet: framewatch-fleet is not built: run deploy/install-deps --with fleet and build again", file=sys.stderr)
         return 2
     if not a.inside:
         return outside(a)

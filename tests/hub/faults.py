@@ -65,7 +65,7 @@ class Faults:
         seconds = max(one.until_acknowledged(300) for one in self.buildings)
         last = {one.name: one.events for one in self.buildings}
         self.rows.append((what, first, last, seconds))
-        print(f"{chr(13) if sys.stdout.isatty() else ''}  {what}: all acknowledged {seconds:.1f} s after the last", flush=True)
+        print(f"{chr(13) if sys.stdout.isatty() else ''}  {what}: all acknowledged {seconds:.1f} s after the last fault", flush=True)
 
     def info(self, what):
         for _ in range(120):
@@ -179,7 +179,7 @@ class Faults:
             if all(info["num_pending"] == 0 and info["num_ack_pending"] == 0 for info in infos):
                 return []
             time.sleep(1)
-        return [f"the workers' consumers do not come to rest: {infos}"]
+        return [f"the workers' consumers stay busy: {infos}"]
 
     def stored(self):
         """Number of occurrences of each key in the database."""

@@ -69,13 +69,13 @@ def check(hub, port, postgres):
         topic, text = line.split(" ", 1)
         times[topic] = times.get(topic, 0) + 1
         topics[topic] = json.loads(text)
-    print(f"  heard over MQTT, times: {times or 'nothing'} {trouble.strip()}")
+    print(f"  received over MQTT, number of messages: {times or 'nothing'} {trouble.strip()}")
     if topics.get("framewatch/kobe/state", {}).get("schema") != "framewatch.state/1":
         problems.append(f"no state of the building came over MQTT: {heard}{trouble}")
     if topics.get("framewatch/kobe/event", {}).get("schema") != "framewatch.event/1":
         problems.append("no event came over MQTT")
     if mosquitto(hub, port, "mosquitto_sub", "framewatch/#", "-C", "1", "-W", "3", password="wrong").returncode in (0, 27):
-        problems.append("a wrong password is let in")
+        problems.append("a wrong password is accepted")
     # A forbidden message is dropped or ends the connection: nobody may receive it.
     spy = subprocess.Popen(["mosquitto_sub", "-h", "localhost", "-p", str(port), "--cafile", f"{hub.certificates}/ca.pem", "-u",
                             USER, "-P", PASSWORD, "-t", "framewatch/kobe/forged", "-C", "1", "-W", "5"],
@@ -85,14 +85,14 @@ def check(hub, port, postgres):
     mosquitto(hub, port, "mosquitto_pub", "fw/up/kobe/event", "-m", "it burns")
     forged, _ = spy.communicate(timeout=60)
     if "burns" in forged:
-        problems.append("building automation can say what others hear")
+        problems.append("building automation can send to other clients")
     foreign = mosquitto(hub, port, "mosquitto_sub", "fw/#", "-C", "1", "-W", "4")
     if foreign.stdout:
-        problems.append("building automation hears what buildings send to the hub")
+        problems.append("building automation receives messages of buildings to the hub")
     refused = postgres.ask("SELECT count(*) FROM refused")
-    print(f"  said over MQTT: nothing came anywhere ({refused} messages refused by the worker)")
+    print(f"  messages sent over MQTT reached nobody ({refused} messages refused by the worker)")
     if refused != "0":
-        problems.append("what was said over MQTT reached the worker")
+        problems.append("a message sent over MQTT reached the worker")
     return problems
 
 

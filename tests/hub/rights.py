@@ -33,7 +33,7 @@ def check(hub, one):
          "a building writes its own")
     for what, act in (
             ("writing another's event", lambda c: c.publish("fw.up.b2.event", b"x")),
-            ("writing what the page says", lambda c: c.publish("framewatch.b1", b"x")),
+            ("writing as the page", lambda c: c.publish("framewatch.b1", b"x")),
             ("commanding another", lambda c: c.publish("fw.down.b2.acknowledge", b"x")),
             ("commanding all", lambda c: c.publish("fw.down.all.minutes", b"x")),
             ("asking for a stream's content", lambda c: c.publish("$JS.API.STREAM.MSG.GET.FW_EVENT", b'{"seq":1}')),
@@ -53,9 +53,9 @@ def check(hub, one):
             ("purging a stream", lambda c: c.publish("$JS.API.STREAM.PURGE.FW_EVENT", b"")),
             ("the server's own subjects", lambda c: c.publish("$SYS.REQ.SERVER.PING", b""))):
         must(denied(thief, act), f"{what} is refused")
-    must(not steals_keys(hub, thief, one), "keys said before another building says them take nothing from it")
+    must(not steals_keys(hub, thief, one), "a stolen key does not suppress the other building's message")
     worker = Client(hub.client[0], hub.certificates, "worker")
-    must(denied(worker, lambda c: c.publish("fw.down.b1.raw", b"x")), "the worker commands nothing but resend")
+    must(denied(worker, lambda c: c.publish("fw.down.b1.raw", b"x")), "the worker may command only resend")
 
     page = Client(hub.client[1], hub.certificates, "page")
 
@@ -66,12 +66,12 @@ def check(hub, one):
     must(command(one.name, "ping", b"", "p1") == b'{"ok":true}', "the page's ping is answered")
     begin = time.monotonic()
     gone = command("b99", "ping", b"", "p2")
-    must(not gone and time.monotonic() - begin < SOON_S, "of a building that is away the page hears so at once")
+    must(not gone and time.monotonic() - begin < SOON_S, "the page learns at once that a building is away")
     stretch = json.dumps({"from_us": 0, "to_us": 1}).encode()
     must(command(one.name, "resend", stretch, "r1") == b'{"ok":true}', "the page's resend is obeyed")
-    must(b'"ok":false' in (command(one.name, "resend", stretch, "r2", -5) or b""), "a command that is late is refused")
-    must(b'"ok":false' in (command(one.name, "raw", stretch, "../x") or b""), "a request that is no name is refused")
-    must(b'"ok":false' in (command(one.name, "reboot", b"", "r4") or b""), "a verb that nobody knows is refused")
+    must(b'"ok":false' in (command(one.name, "resend", stretch, "r2", -5) or b""), "a late command is refused")
+    must(b'"ok":false' in (command(one.name, "raw", stretch, "../x") or b""), "a malformed request name is refused")
+    must(b'"ok":false' in (command(one.name, "reboot", b"", "r4") or b""), "an unknown command is refused")
     return problems
 
 
@@ -102,7 +102,7 @@ def revoke(hub, one):
         seconds = time.monotonic() - begin
     try:
         Client(hub.client[0], hub.certificates, one.name)
-        return seconds, ["a revoked building is let in"]
+        return seconds, ["a revoked building is accepted"]
     except (Denied, OSError):
         return seconds, []
 
@@ -115,6 +115,6 @@ def strangers(hub):
     subprocess.run(["cp", f"{hub.certificates}/ca.pem", other], check=True)
     try:
         Client(hub.client[0], other, "operator")
-        return ["a certificate of another authority is let in"]
+        return ["a certificate of another authority is accepted"]
     except (Denied, OSError):
         return []

@@ -63,7 +63,7 @@ def check(hub):
             found = one_run(hub, name, True, kills)
             both = without.keys() & found.keys()
             same = sum(without[end] == found[end] for end in both)
-            print(f"  {what}: {same} of {len(both)} estimates are the same bytes")
+            print(f"  {what}: {same} of {len(both)} estimates have the same bytes")
             if len(both) < LEAST or same < len(both):
                 problems.append(f"{what}: {len(both) - same} of {len(both)} estimates differ")
         if not problems:
