@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a hub and its workers make of bad input: messages that are none, floods, clocks that jump, a hub that is full,
-certificates that are over."""
+"""Bad input to a hub and its workers: malformed messages, floods, clocks that jump, a full hub, expired certificates."""
 import json
 import os
 import shutil

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A building at the hub: real `framewatch uplink`, real `framewatch run` where one is wanted, and events that this test
-adds to its history as `run` would."""
+"""A building at the hub: real `framewatch uplink`, on request real `framewatch run`, and events that this test
+adds to its history like `run`."""
 import os
 import shutil
 import signal

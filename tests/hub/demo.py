@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""demo.py PROGRAM [--seconds S] [--speed N] [--port N] [--keep DIR]: a hub of three servers, PostgreSQL, six virtual
-buildings with a real `run` and `uplink` each, one earthquake, one building that loses 15 % of a frame; the overview in the
-browser. Ends by itself with a table of what happened. Exit status: 0 all of it is seen, 1 not, 2 something is missing."""
+"""demo.py PROGRAM [--seconds S] [--speed N] [--port N] [--keep DIR]: runs a hub of three servers, PostgreSQL
+and six virtual buildings with a real `run` and `uplink` each. In one earthquake, one building loses 15 % of a frame. The
+overview is in the browser. Ends by itself with a table of results. Exit status: 0 the hub finds the loss and no other,
+1 it does not, 2 something is not installed."""
 import argparse
 import asyncio
 import math

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Faults of hub, line, centre and building, one after the other, while three real buildings go on; afterwards everything
-must be in the database, once."""
+"""Faults of hub, line, center and building, one after the other, while three real buildings run. At the end the database
+must hold every message exactly once."""
 import json
 import os
 import signal

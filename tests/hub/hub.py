@@ -107,8 +107,8 @@ class Hub:
             self.servers[i].end(signal.SIGKILL)
 
     def wait(self, timeout_s=90, patience_s=15):
-        """Until every server is well. Debian's 2.9.10 at times says for ever of a consumer that nobody uses that it is
-        not current; after some seconds it is enough that JetStream runs."""
+        """Waits until every server is healthy. Debian's 2.9.10 sometimes reports an unused consumer as not current forever, so
+        after some seconds a running JetStream suffices."""
         begin = time.monotonic()
         for i in range(3):
             while True:

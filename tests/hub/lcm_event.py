@@ -20,8 +20,8 @@ def text(value):
 
 
 def encoded(print_, row):
-    """row: kind, id, time_us, state, since_us, severity, place, value, std_error, unit, message, segment: as the
-    history's table has them."""
+    """row: kind, id, time_us, state, since_us, severity, place, value, std_error, unit, message, segment, as in the
+    history's table."""
     kind, number, time_us, state, since_us, severity, place, value, error, unit, message, segment = row
     return (print_ + struct.pack(">qqqii", time_us, since_us, number, state, severity) + text(kind) + text(place) +
             struct.pack(">dd", value, error) + text(unit) + text(message) + text(segment))

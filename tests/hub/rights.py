@@ -76,8 +76,8 @@ def check(hub, one):
 
 
 def steals_keys(hub, thief, one):
-    """The hub takes a second message of one Nats-Msg-Id for a repetition, whoever sent the first: a thief that says the
-    key of the event to come would have it acknowledged, and thrown away."""
+    """The hub takes a second message with the same Nats-Msg-Id for a repetition, whoever sent the first. A thief that sends
+    the key of a future event could thus have that event acknowledged and dropped."""
     kind, number, time_us, state = lcm_event.event(one.events)[:4]
     key = one.event_key(kind, number, time_us, state)
     thief.publish(f"fw.up.{thief.name}.event", b"x", {"Nats-Msg-Id": key})

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""expressions.py PROMETHEUS BOARD: asks a Prometheus every expression of the board and of the rules
-that it has loaded. Exit 1 when one is no PromQL, or has no series although a building shakes, or when an alert
-fires that should not."""
+"""expressions.py PROMETHEUS BOARD: queries a Prometheus for every expression of the board and of its
+loaded rules. Exits with 1 if one is not valid PromQL, if one has no series while a building shakes, or if a wrong alert
+fires."""
 import json
 import re
 import sys

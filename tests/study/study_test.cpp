@@ -49,7 +49,7 @@ TEST(StudyCase, WritesConfigurationTwoRecordsAndTruth) {
       EXPECT_GT(std::filesystem::file_size(directory + record), 10000u);
     const auto outcome = score(directory);
     ASSERT_TRUE(outcome);
-    EXPECT_EQ(outcome->verdict, "refused") << "nobody has diagnosed it";
+    EXPECT_EQ(outcome->verdict, "refused") << "it has no diagnosis";
     EXPECT_EQ(outcome->truths, 0);
   }
 }

@@ -72,7 +72,7 @@ TEST(SampleMerger, SilentAxisHoldsUpOnceAndRecovers) {
   for (int i = 10; i < 16; ++i) b.push(i, 0, i);
   EXPECT_EQ(b.out.size(), 10u) << "waits for the lateness";
   b.push(16, 0, 16);
-  EXPECT_EQ(b.out.size(), 17u) << "then for nobody";
+  EXPECT_EQ(b.out.size(), 17u) << "then it waits for no axis";
   b.push(17, 0, 17);
   EXPECT_EQ(b.out.size(), 18u);
   EXPECT_TRUE(std::isnan(b.out[17].accel[1]));

@@ -87,7 +87,7 @@ TEST(StoryDrift, SlowDriftIsRestoredFromTheStiffness) {
   EXPECT_TRUE(std::isfinite(known.slow_ratio));
   EXPECT_GT(std::abs(unknown.ratio - known.ratio) / known.ratio, kLost);
   EXPECT_TRUE(std::isnan(unknown.slow_ratio));
-  EXPECT_TRUE(std::isnan(unknown.std_error)) << "without a stiffness nobody knows what is missing";
+  EXPECT_TRUE(std::isnan(unknown.std_error)) << "the missing part is unknown without a stiffness";
 }
 
 TEST(StoryDrift, UnrestoredDriftCountsOnceTheStiffnessIsKnown) {

@@ -58,8 +58,7 @@ TEST(Kvaser, SurvivesAndCountsACardThatIsRemovedAndInserted) {
     EXPECT_GT(c.received, before + 300) << "did not resume";
     lost += c.lost;
   }
-  fmt::print("a card taken out and put in: {} frames lost, all counted, {} not sent\n", lost,
-             unsent);
+  fmt::print("card removed and inserted: {} frames lost, all counted, {} not sent\n", lost, unsent);
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ TEST(Vxcan, PublishesNoWrongValueUnderLossReorderingAndJitter) {
   }
   EXPECT_GT(lost, 100);
   EXPECT_GT(reordered, 10);
-  fmt::print("of {} frames {} lost, {} overtaken: all told, no value at a wrong place\n",
+  fmt::print("{} frames: {} lost, {} overtaken; all counted, no value at a wrong time\n",
              2 * kInstants, lost, reordered);
 }
 

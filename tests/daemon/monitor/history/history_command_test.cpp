@@ -193,7 +193,7 @@ TEST_F(HistoryCommand, WritesRawSamplesAsALogWithConfiguredAddresses) {
     last = sample->sequence;
   }
   EXPECT_EQ(samples, (kInstants - (kLostTo - kLostFrom)) * kAxes);
-  EXPECT_EQ(jump, kLostTo - kLostFrom + 1) << "what was lost is missing in the sequence";
+  EXPECT_EQ(jump, kLostTo - kLostFrom + 1) << "the sequence skips lost samples";
 }
 
 TEST_F(HistoryCommand, KeepsTemperaturesInTheOrderOfTheLog) {

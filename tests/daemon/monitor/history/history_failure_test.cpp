@@ -129,7 +129,7 @@ TEST_F(HistoryFailure, RecoversFromAFullDisk) {
           return s.raw_trouble.empty() && s.summary_trouble.empty() && s.raw_queue_bytes == 0;
         },
         kSoon));
-    EXPECT_EQ(history.status().raw_dropped, 0) << "the queue held what the disk did not take";
+    EXPECT_EQ(history.status().raw_dropped, 0) << "the queue kept data that the disk refused";
     EXPECT_TRUE(monitor.update(6'000'000, history.status()).empty());
     const auto over = monitor.update(20'000'000, history.status());
     ASSERT_FALSE(over.empty());

@@ -132,7 +132,7 @@ TEST(KillStorm, LosesAtMostASecondOfRawSamplesAndNothingCommitted) {
       EXPECT_LE(windows, 101) << "kill " << kill << ": counted twice";
     EXPECT_GE(now.empty() ? 0 : now.rbegin()->first + kSecond_us,
               bus.committed_us / kSecond_us * kSecond_us)
-        << "kill " << kill << ": what was said to be committed is gone";
+        << "kill " << kill << ": a committed period is missing";
     before = now;
   }
   EXPECT_LE(worst_restart_s, kills() > kKills ? kLongestRestart_s : kLongestAmongOthers_s);

@@ -220,7 +220,7 @@ TEST_F(HastyPage, ClosesASlowRequest) {
   }
   const int s = connect_to(server_.port());
   ASSERT_TRUE(say(s, kHalfAHead));
-  EXPECT_TRUE(rest(s).starts_with("HTTP/1.1 408 ")) << "whoever listens is told";
+  EXPECT_TRUE(rest(s).starts_with("HTTP/1.1 408 ")) << "listeners get the events";
   ::close(s);
 }
 

@@ -74,7 +74,7 @@ TEST(StationLayout, ReadsOffsetsAndCoordinatesAsPlacesInMeters) {
   EXPECT_NEAR(*at->x_m, 30, 1e-3);
   columns[1].header.longitude_deg = -140;
   EXPECT_FALSE(station_place(*read_station(columns), columns, 1, plan, why)->x_m)
-      << "no building is so long";
+      << "no building is that long";
 }
 
 TEST(StationLayout, AsksForDataThatHeadersLack) {

@@ -68,7 +68,7 @@ TEST(NearestLaw, IsALawOfAnElementThatExplainsMostOfTheMisfit) {
   };
   EXPECT_TRUE(nearest(kNearest + kNear, LawForm::power));
   EXPECT_FALSE(nearest(kNearest - kNear, LawForm::power));
-  EXPECT_FALSE(nearest(kNearest + kNear, LawForm::damper)) << "has no shape of its own";
+  EXPECT_FALSE(nearest(kNearest + kNear, LawForm::damper)) << "has no shape";
   EXPECT_FALSE(nearest(kNearest + kNear, LawForm::power, 2)) << "a record gets worse";
   EXPECT_FALSE(is_nearest_law(made.context(), made.trial(EffectKind::gain_error, kExcess)));
 }

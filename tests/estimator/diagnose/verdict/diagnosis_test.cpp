@@ -111,7 +111,7 @@ TEST(Where, GivesAFloorsKindOfForceIfItFollowsTheMotion) {
   const WhereEntry oscillator =
       of_upper_floor(EffectKind::tuned_mass_damper, PlaceKind::node, {2000, 2.1, 0.05});
   ASSERT_GT(oscillator.peak, 0);
-  EXPECT_FALSE(oscillator.kind) << "has a motion of its own";
+  EXPECT_FALSE(oscillator.kind) << "it does not follow the floor's motion";
 }
 
 }  // namespace diagnosis_test
