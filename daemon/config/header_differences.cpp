@@ -77,8 +77,8 @@ std::string about_direction(const Both& both, double azimuth_y_deg) {
   if (is_vertical(*both.header) && axis.vertical) return {};
   if (is_vertical(*both.header))
     return fmt::format(
-        "it measures {}, the configuration has it along {}: its values are no motion "
-        "of the frames",
+        "the sensor measures {}, but the configuration says along {}: its values do not show "
+        "the motion of the frames",
         direction_text(*both.header), letter(axis));
   if (!is_horizontal(*both.header)) return {};
   const double header_deg = *both.header->azimuth_deg;
@@ -86,14 +86,14 @@ std::string about_direction(const Both& both, double azimuth_y_deg) {
   const double off_deg = apart_deg(header_deg, configured_deg);
   if (std::abs(off_deg) <= kSameAzimuth_deg) return {};
   const std::string azimuths =
-      fmt::format("it points to azimuth {:g} deg, by the configuration to {:.4g}", header_deg,
-                  std::fmod(configured_deg + 720, 360));
+      fmt::format("the sensor points to azimuth {:g} deg, but the configuration says {:.4g} deg",
+                  header_deg, std::fmod(configured_deg + 720, 360));
   if (std::abs(off_deg) >= 180 - kSameAzimuth_deg)
-    return fmt::format("{}: its motion is taken with the wrong sign; polarity = {:.0f} mends it",
-                       azimuths, -axis.polarity);
+    return fmt::format("{}: its motion would have the wrong sign; set polarity = {:.0f}", azimuths,
+                       -axis.polarity);
   return fmt::format(
-      "{}: {:.0f} % of the motion there are taken for what is there, with {:.0f} % of "
-      "the motion across",
+      "{}: its values contain {:.0f} % of the motion in the configured direction and {:.0f} % of "
+      "the motion across it",
       azimuths, 100 * std::cos(off_deg / kDegrees), std::abs(100 * std::sin(off_deg / kDegrees)));
 }
 
@@ -113,26 +113,26 @@ std::string about_level(const Both& both, int stories, std::optional<int> usual)
   if (level.kind == LevelKind::basement && story != 0) expected = "story 0, or use = false";
   if (level.kind == LevelKind::outside) expected = "use = false";
   if (level.kind == LevelKind::floor && usual && level.number - story != *usual)
-    expected = fmt::format("story {}, as the other channels are counted", level.number - *usual);
+    expected = fmt::format("story {} (counted as for the other channels)", level.number - *usual);
   if (expected.empty()) return {};
   return fmt::format(
-      "it is on {} (\"{}\"), by the configuration on story {}: stiffness and damping "
-      "of the stories between are wrong if that is so; {} agrees with it",
+      "the sensor is on {} (\"{}\"), but the configuration says story {}: if the header is right, "
+      "stiffness and damping of the stories between are wrong; set {}",
       drivers::level_text(level), both.header->place, story, expected);
 }
 
 std::string about_unit(const Both& both) {
   const bool is_force = both.header->unit == "N";
   if (is_force && !both.axis->is_force)
-    return "it is a force in N, which the configuration takes for an acceleration: quantity = "
-           "\"force\" is right for this record";
+    return "its values are a force in N, but the configuration says acceleration: set quantity = "
+           "\"force\" for this record";
   if (both.axis->is_force && !is_force && !both.header->unit.empty())
-    return fmt::format("its values are in {}, which the configuration takes for a force in N",
+    return fmt::format("its values are in {}, but the configuration says a force in N",
                        both.header->unit);
   if (both.axis->scale == 1 || both.header->unit.empty()) return {};
   return fmt::format(
-      "its values, {} in the file, are read as m/s^2: scale = {:g} makes {:g} times of "
-      "them; scale = 1 is right for this record",
+      "its values, {} in the file, are already converted to m/s^2: scale = {:g} multiplies them "
+      "by {:g} again; set scale = 1 for this record",
       both.header->unit, both.axis->scale, both.axis->scale);
 }
 
@@ -151,8 +151,9 @@ std::vector<std::string> header_differences(const Config& config, const drivers:
          {about_direction(both, azimuth_y_deg.value_or(0)),
           about_level(both, config.pipeline.structure.stories, usual), about_unit(both)})
       if (!what.empty())
-        out.push_back(fmt::format("channel {}: the record's header says otherwise: {}",
-                                  both.axis->name, what));
+        out.push_back(
+            fmt::format("channel {}: the record's header contradicts the configuration: {}",
+                        both.axis->name, what));
   return out;
 }
 

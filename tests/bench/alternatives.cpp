@@ -12,7 +12,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr int kRowsAtOnce =
-    4096;  // of the design matrix: what is measured at large sizes fits memory
+    4096;  // of the design matrix; problems of the measured sizes fit into memory
 
 /// Dense rows and right-hand sides of instants.
 class Rows {
@@ -35,13 +35,13 @@ class Rows {
         right_[t * pattern_.equations + i] = motion[2 * pattern_.elements + i];
     }
   }
-  /// As one writes it down: gram += rows' rows.
+  /// Adds the outer products of all rows: gram += rows' rows.
   void multiply(Eigen::MatrixXd& gram, Eigen::VectorXd& right, int instants) const {
     const auto rows = rows_.topRows(instants * pattern_.equations);
     gram.noalias() += rows.transpose() * rows;
     right.noalias() += rows.transpose() * right_.head(rows.rows());
   }
-  /// Its lower half only, the rows added or subtracted.
+  /// Updates the lower half only, with rows added or subtracted.
   void update(Eigen::MatrixXd& gram, Eigen::VectorXd& right, int instants, double sign) const {
     const auto rows = rows_.topRows(instants * pattern_.equations);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose(), sign);

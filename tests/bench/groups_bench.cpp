@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a shift costs of buildings with sensors on few floors, beside the 5-story building of the
-// paper's Table 1 with one on every frame, in one run on one core.
+// Measures the cost of a shift for buildings with sensors on few floors, beside the 5-story
+// building of the paper's Table 1 with a sensor on every frame. One run, one core.
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -24,8 +24,8 @@ namespace {
 
 constexpr double kFrom_s = 40, kTo_s = 100;  // warm-up, tuning and first windows are over
 
-/// Mean of a shift, us, without the largest hundredth: the main window and the look at the model,
-/// which goes on a part of the time.
+/// Mean of a shift, us, without the largest hundredth: the main window and the model check, which
+/// runs part of the time.
 double shift_us(estimator::PipelineConfig config, const Eigen::MatrixXd& accel) {
   config.options.other_windows_s.clear();
   config.options.boxplot_windows = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inner loops one by one, for every instruction set this machine has (google-benchmark).
+// Measures each inner loop for every instruction set of this machine (google-benchmark).
 #include <benchmark/benchmark.h>
 
 #include <string>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From the arrival of a sample on the socket to the publication of its estimate, live over LCM's
-// multicast on this machine: a child process is the building, this one estimates.
+// Measures the time from the arrival of a sample on the socket to the publication of its estimate,
+// live over LCM's multicast on this machine. A child process plays the building; this process
+// estimates.
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -37,7 +38,7 @@ daemon::Config live_config(int stories, int bays) {
   return config;
 }
 
-/// Every axis a node of its own, every 10 ms, until killed.
+/// Sends every axis as a node, every 10 ms, until killed.
 [[noreturn]] void be_the_building(const Eigen::MatrixXd& accel) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::string error;

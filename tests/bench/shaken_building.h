@@ -19,7 +19,7 @@ estimator::PipelineConfig building(int stories, int bays);
 /// any number of stories, and exactness does not matter here.
 Eigen::MatrixXd shaken(const estimator::PipelineConfig& config, int instants);
 
-/// What the alternatives are fed with: windows of element motion of the same size, random.
+/// Random windows of element motion of the same size, as input for the alternatives.
 struct DenseInput {
   DenseInput(const estimator::PipelineConfig& config, int instants);
   Pattern pattern() const;

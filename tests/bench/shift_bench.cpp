@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What one shift of the window costs, ours and by dense algebra, side by side in one run on one
+// Measures one shift of the window, ours and with dense algebra, side by side in one run on one
 // core.
 #include <malloc.h>
 
@@ -29,8 +29,8 @@ constexpr int kWindow = 500;
 constexpr int kShifts = 200;            // of an alternative, at most
 constexpr int kSteadyFrom = 1000;       // instants; warm-up and first tuning are over on most
 constexpr double kMaxOfOne_s = 8;       // of an alternative; longer ones are cut short or skipped
-constexpr double kDenseRate = 1.5e10;   // floating-point operations a second, to foresee that
-constexpr double kUnblockedRate = 2e9;  // the same of Eigen's LDLT and numpy's SVD
+constexpr double kDenseRate = 1.5e10;   // floating-point operations a second, to predict that
+constexpr double kUnblockedRate = 2e9;  // the same for Eigen's LDLT and numpy's SVD
 constexpr double kBudget_us = 10'000;   // of a shift at 100 Hz
 
 struct Size {
@@ -53,7 +53,7 @@ struct Row {
   Size size;
   int parameters = 0, equations = 0;
   Cost shift;
-  double windows_us = 0, windows_p99_us = 0;  ///< with the default's four windows
+  double windows_us = 0, windows_p99_us = 0;  ///< with the default four windows
   double boxplot_us = 0, front_us = 0, start_s = 0, memory_mb = 0;
   /// naive, LLT, LDLT by Eigen as the program is built, then for AVX2 and AVX-512; numpy
   std::array<Result, 7> other{};
@@ -69,7 +69,7 @@ double allocated_mb() {
   return 1e-6 * static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-/// Time of every instant from kSteadyFrom on, all axes of it pushed one after the other.
+/// Times every instant from kSteadyFrom on, with all its axes pushed one after the other.
 template <typename Clock, typename Push>
 std::vector<double> time_instants(const Eigen::MatrixXd& accel, Clock clock_us, Push push) {
   std::vector<double> times;
@@ -83,9 +83,9 @@ std::vector<double> time_instants(const Eigen::MatrixXd& accel, Clock clock_us, 
   return times;
 }
 
-/// Reading the CPU clock is a system call, which a shift of a few microseconds feels: the median of
-/// small buildings is by the other clock, the p99 always by the CPU clock, which does not count
-/// what other processes take.
+/// Reading the CPU clock is a system call, which costs too much in a shift of a few microseconds.
+/// So the median of small buildings uses the other clock. The p99 always uses the CPU clock, which
+/// does not count time of other processes.
 template <typename Make>
 Cost time_twice(const Eigen::MatrixXd& accel, double clock_us, bool small, Make make) {
   auto first = make();
@@ -100,8 +100,8 @@ Cost time_twice(const Eigen::MatrixXd& accel, double clock_us, bool small, Make 
   return cost;
 }
 
-/// Whole pipeline, from samples to the estimate given out: the main window alone, as the
-/// alternatives have it; all windows; the main window with boxplots.
+/// Times the whole pipeline, from samples to the published estimate: with the main window alone,
+/// as the alternatives have it; with all windows; with the main window and boxplots.
 enum class Ours { window, windows, boxplot };
 
 void run_ours(const estimator::PipelineConfig& base, const Eigen::MatrixXd& accel, double clock_us,
@@ -134,7 +134,7 @@ void run_ours(const estimator::PipelineConfig& base, const Eigen::MatrixXd& acce
   }
 }
 
-/// From samples to element deformations: what every method needs, the alternatives too.
+/// Times the step from samples to element deformations, which every method needs.
 class FrontEnd {
  public:
   explicit FrontEnd(const estimator::PipelineConfig& config)
@@ -179,8 +179,8 @@ const std::vector<Make> kPortable = {make_alternative_v1};
 const std::vector<Make> kNative = {make_alternative_v3, make_alternative_v4};
 constexpr double kPortableSlower = 3;
 
-/// The fastest of some instruction sets. Cut to `counted` of the window's instants; what they cost
-/// is taken kWindow / counted times.
+/// Returns the fastest of some instruction sets. Cut to `counted` of the window's instants, with
+/// the cost scaled by kWindow / counted.
 Result run_dense(Method method, const std::vector<Make>& builds, const DenseInput& input,
                  double flops, double rate) {
   const double foreseen_s = flops / rate;
@@ -236,7 +236,7 @@ void run_alternatives(const estimator::PipelineConfig& config, Row& row, const R
     }
     row.other[6] = run_numpy(row.equations, row.parameters, 2 * gram);
   }
-  // What would take too long or too much memory follows from the next smaller building.
+  // Cases that need too long or too much memory are extrapolated from the next smaller building.
   if (smaller == nullptr) return;
   const double ratio = p / smaller->parameters;
   for (std::size_t i = 0; i < row.other.size(); ++i)

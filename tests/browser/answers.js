@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// The four answers of the page in what can happen to a building: quiet, shaking, damaged, acknowledged, a
-// sensor that dies, opened after all of it. A screenshot of each, and the words that must be on it.
+// Checks the four answers of the page in every situation: quiet, shaking, damaged, acknowledged,
+// with a dead sensor, and opened afterwards. Takes a screenshot of each and checks the words on
+// it.
 const {chromium} = require('playwright-core');
 const {spawn} = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');
 
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
-const kPatience = {timeout: 60000}; // of whatever a busy machine may take
-const kDrop_s = 60, kPlayed_s = 900, // ended when they have been looked at
+const kPatience = {timeout: 60000}; // for anything, on a busy machine
+const kDrop_s = 60, kPlayed_s = 900, // ended after the check
    kDrop_ratio = -0.15, kMaxOff = 0.02, kSharp = 0.6, kLate_s = 20;
 const kDamaged = 'kx_1_y2', kDead = 'F1-X2';
 
@@ -54,28 +55,28 @@ async function shot(page, name) {
   await page.evaluate(() => scrollTo(0, 0));
   await pause(700);
   await page.screenshot({path: name + '.png', fullPage: true});
-  expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name}: nothing is cut off at the side`);
+  expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name}: the page fits the width`);
   const names = await page.evaluate(() => [...document.querySelectorAll('button,select,input,canvas')].filter(e => e.offsetParent && !(e.textContent.trim() || e.ariaLabel || e.getAttribute('aria-label') || e.labels && e.labels.length || e.closest('[role=img],[aria-hidden]'))).map(e => e.id || e.outerHTML));
-  expect(names.length === 0, `${name}: whatever can be used has a name ${names}`);
+  expect(names.length === 0, `${name}: every control has a name ${names}`);
 }
 
 async function quiet(page) {
   const motion = shake(scenario('quiet', {motion: t => t.replace('peak_mps2 = 2.0', 'peak_mps2 = 0.0005')}));
-  await until(page, 'quiet: samples come', () => framewatch.rows > 900);
-  await until(page, 'quiet: the answers come', () => framewatch.told && framewatch.told.answers[2].state === 'good');
-  expect(/Not known yet/.test(await answer(page, 0)), 'quiet: nobody knows yet what it is like unchanged');
-  expect(/Nothing: no acceleration over 0.05 m\/s²\. Since .* UTC\./.test(await answer(page, 2)), 'quiet: it went through nothing');
+  await until(page, 'quiet: samples arrive', () => framewatch.rows > 900);
+  await until(page, 'quiet: answers appear', () => framewatch.told && framewatch.told.answers[2].state === 'good');
+  expect(/Not known yet/.test(await answer(page, 0)), 'quiet: there is no baseline yet');
+  expect(/Nothing: no acceleration over 0.05 m\/s²\. Since .* UTC\./.test(await answer(page, 2)), 'quiet: no shaking is reported');
   expect((await page.textContent('#no-findings')) === 'none' && await page.isVisible('#no-findings'), 'quiet: no open findings');
   await shot(page, 'quiet');
   await stop(motion);
 }
 
 async function shaking(page) {
-  await until(page, 'shaking: the nodes were started anew, which is over soon', () => framewatch.told.findings.length === 0);
-  await until(page, 'shaking: it is not changed', () => /No\. None of \d+ elements/.test(document.getElementById('answers').innerText));
+  await until(page, 'shaking: findings of the nodes\' restart are closed', () => framewatch.told.findings.length === 0);
+  await until(page, 'shaking: no change is reported', () => /No\. None of \d+ elements/.test(document.getElementById('answers').innerText));
   await until(page, 'shaking: peaks of each story', () => /It is shaking: a story swayed by up to [\d.]+ % of its height.* N along x.*Story 2: [\d.]+ % .*Story 1: [\d.]+ % /s.test(document.getElementById('answers').innerText));
   await until(page, 'shaking: no finding is open', () => framewatch.told.findings.length === 0);
-  expect(/All 10 sensors send, and the model leaves (under )?[\d.]+ % of the motion unexplained/.test(await answer(page, 1)), 'shaking: it is to be believed');
+  expect(/All 10 sensors send, and the model leaves (under )?[\d.]+ % of the motion unexplained/.test(await answer(page, 1)), 'shaking: estimates can be trusted');
   expect(/Nothing\./.test(await answer(page, 3)), 'shaking: nothing to do');
   expect((await state(page)) === 'live', 'shaking: live');
   expect(/\d kN\/m/.test(await page.textContent('#chosen')) && !/\de[+-]/.test(await page.textContent('main')), 'shaking: numbers are in kN/m, none with an exponent');
@@ -83,10 +84,10 @@ async function shaking(page) {
 }
 
 async function damaged(page) {
-  await until(page, 'damaged: it is said', name => framewatch.told.findings.some(f => f.place === name), kDamaged);
+  await until(page, 'damaged: the change is reported', name => framewatch.told.findings.some(f => f.place === name), kDamaged);
   const first = await page.evaluate(() => framewatch.told.findings[0]);
   expect(/Yes\. Story 1, frame y2 \(kx_1_y2\) has lost .* % of its stiffness, give or take [\d.]+ %: .* times its uncertainty\. Since .* UTC\./.test(await answer(page, 0)), 'damaged: the first answer names element, size, error and time');
-  await until(page, 'damaged: the number sharpens', ([e, share]) => framewatch.told.findings[0] && framewatch.told.findings[0].error < share * e, [first.error, kSharp]);
+  await until(page, 'damaged: the number becomes more exact', ([e, share]) => framewatch.told.findings[0] && framewatch.told.findings[0].error < share * e, [first.error, kSharp]);
   await pause(1500);
   const [now, event] = await page.evaluate(() => [framewatch.told.findings[0], [...framewatch.alarms.values()].find(a => a.id === framewatch.told.findings[0].id)]);
   console.log(`first ${first.ratio} +- ${first.error}, now ${now.ratio} +- ${now.error}`);
@@ -95,8 +96,8 @@ async function damaged(page) {
   const size = (await answer(page, 0)).match(/has lost ([\d.]+ %)/)[1];
   const texts = await Promise.all(['#findings', '#alarms', '#chosen'].map(id => page.textContent(id)));
   expect(texts.every(t => t.includes(size)), `damaged: ${size} in answer, findings, events and element: ${texts[2]}`);
-  expect(/structural engineer inspect story 1, frame y2/.test(await answer(page, 3)), 'damaged: what to do');
-  expect((await page.getAttribute('#alert', 'role')) === 'alert' && /has lost/.test(await page.textContent('#alert')), 'damaged: a screen reader says it');
+  expect(/structural engineer inspect story 1, frame y2/.test(await answer(page, 3)), 'damaged: advice is given');
+  expect((await page.getAttribute('#alert', 'role')) === 'alert' && /has lost/.test(await page.textContent('#alert')), 'damaged: a screen reader reads it');
   await shot(page, 'damaged');
   await page.click('#box-mode');
   await page.click('#values summary');
@@ -117,9 +118,9 @@ async function acknowledged(page) {
   await page.focus('#findings button');
   await page.keyboard.press('Enter');
   await until(page, 'acknowledged: by keyboard, and no longer open', () => document.querySelectorAll('#findings button').length === 0);
-  await until(page, 'acknowledged: it is still changed', () => /Yes\. .*kx_1_y2 is acknowledged/s.test(document.querySelector('#answers > li').innerText));
+  await until(page, 'acknowledged: the change stays', () => /Yes\. .*kx_1_y2 is acknowledged/s.test(document.querySelector('#answers > li').innerText));
   await until(page, 'acknowledged: nothing to do', () => /Nothing\./.test(document.querySelectorAll('#answers > li')[3].innerText));
-  expect(/acknowledged/.test(await page.textContent('#alarms')), 'acknowledged: so says the list of events');
+  expect(/acknowledged/.test(await page.textContent('#alarms')), 'acknowledged: the list of events shows it');
   await shot(page, 'acknowledged');
   await page.click('#baseline');
   expect(await page.isVisible('#ask-baseline') && /cannot be undone/.test(await page.textContent('#ask-baseline')), 'a new baseline is asked about');
@@ -130,12 +131,12 @@ async function acknowledged(page) {
 }
 
 async function deadChannel(page) {
-  await until(page, 'dead channel: the other nodes go on', () => framewatch.told.findings.every(f => f.kind !== 'service'));
+  await until(page, 'dead channel: other nodes continue', () => framewatch.told.findings.every(f => f.kind !== 'service'));
   await until(page, 'dead channel: a finding', name => framewatch.told.findings.some(f => f.place === name && f.of_channel), kDead);
   await until(page, 'dead channel: the pill is amber', () => /^live, but 1 of 10 sensors not good$/.test(document.getElementById('state').textContent) && document.getElementById('state').className.includes('amber'));
   await until(page, 'dead channel: a red dot on the building', name => building.dots.includes(name), kDead);
   expect(new RegExp(`Only in part\\. ${kDead} is silent: no sample comes from it any more\\. Since .* UTC.*9 of 10 sensors are good`, 's').test(await answer(page, 1)), 'dead channel: the second answer says so');
-  expect(new RegExp(`Check the power, cable and mounting of sensor ${kDead}`).test(await answer(page, 3)), 'dead channel: what to do');
+  expect(new RegExp(`Check the power, cable and mounting of sensor ${kDead}`).test(await answer(page, 3)), 'dead channel: advice is given');
   expect((await page.textContent('#findings')).includes(kDead), 'dead channel: in the open findings');
   await shot(page, 'dead-channel');
 }
@@ -143,11 +144,11 @@ async function deadChannel(page) {
 async function openedLate(browser, address) {
   await pause(1000 * kLate_s);
   const page = await open(browser, address);
-  await until(page, 'opened late: says how long nothing came', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
+  await until(page, 'opened late: the silence is shown', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
   await until(page, 'opened late: the answers are there', () => framewatch.told && framewatch.told.answers.length === 4);
-  expect(/Yes\. Story 1, frame y2/.test(await answer(page, 0)), 'opened late: what happened is said');
-  expect(/No: no samples for .*The values shown are old/.test(await answer(page, 1)), 'opened late: that it is old is said');
-  expect(/A shake: a story swayed by up to/.test(await answer(page, 2)), 'opened late: what it went through is said');
+  expect(/Yes\. Story 1, frame y2/.test(await answer(page, 0)), 'opened late: the change is shown');
+  expect(/No: no samples for .*The values shown are old/.test(await answer(page, 1)), 'opened late: old values are marked');
+  expect(/A shake: a story swayed by up to/.test(await answer(page, 2)), 'opened late: the shaking is shown');
   expect(await page.evaluate(() => framewatch.opened) > 60, 'opened late: the last minutes are there');
   await until(page, 'opened late: last values with their age', () => /last value .* kN\/m .* old, of .* UTC/.test(document.getElementById('chosen').textContent));
   expect(await page.evaluate(() => plan.parameters.every((q, i) => q.kind !== 0 || building.known[i])), 'opened late: no frame is hatched');
@@ -175,15 +176,15 @@ async function strongMotionIsOver(page) {
 async function startedAnew(browser, serve, options) {
   await stop(serve);
   const page = await open(browser, await addressOf(start(...options)));
-  await until(page, 'started anew: the answers are there', () => framewatch.told && framewatch.told.answers.length === 4);
-  await until(page, 'started anew: how old all is', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
-  // Without [watch] it was the page's own server that found the change, and nobody stored it.
-  expect(/Not known yet/.test(await answer(page, 0)), 'started anew: what nobody stored is not known');
-  expect(/A shake: a story swayed by up to/.test(await answer(page, 2)), 'started anew: what it went through is said');
-  expect(/Read the report/.test(await answer(page, 2)), 'started anew: the report is named');
-  expect(await page.evaluate(() => framewatch.opened) > 0, 'started anew: the last minutes are there');
-  await until(page, 'started anew: last values with their age', () => /last value .* kN\/m .* old, of .* UTC/.test(document.getElementById('chosen').textContent));
-  expect(await page.evaluate(() => plan.parameters.every((q, i) => q.kind !== 0 || building.known[i])), 'started anew: no frame is hatched');
+  await until(page, 'restarted: answers appear', () => framewatch.told && framewatch.told.answers.length === 4);
+  await until(page, 'restarted: ages are shown', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
+  // Without [watch] the page's own server finds the change, and nobody stores it.
+  expect(/Not known yet/.test(await answer(page, 0)), 'restarted: unstored findings are gone');
+  expect(/A shake: a story swayed by up to/.test(await answer(page, 2)), 'restarted: the shaking is shown');
+  expect(/Read the report/.test(await answer(page, 2)), 'restarted: the report is named');
+  expect(await page.evaluate(() => framewatch.opened) > 0, 'restarted: the last minutes are there');
+  await until(page, 'restarted: last values with their age', () => /last value .* kN\/m .* old, of .* UTC/.test(document.getElementById('chosen').textContent));
+  expect(await page.evaluate(() => plan.parameters.every((q, i) => q.kind !== 0 || building.known[i])), 'restarted: no frame is hatched');
   await shot(page, 'started-anew');
 }
 

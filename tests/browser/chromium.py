@@ -9,7 +9,7 @@ import time
 
 
 def program():
-    """Empty where there is none."""
+    """Returns the path of the browser; empty if there is none."""
     return os.environ.get("FRAMEWATCH_CHROMIUM") or shutil.which("chromium") or ""
 
 
@@ -30,7 +30,7 @@ class Chromium:
         self.number, self.rest, self.errors = 0, b"", []
 
     def ask(self, method, session=None, **parameters):
-        """The result; raises RuntimeError with what Chromium says instead, or when it has ended."""
+        """Returns the result. Raises RuntimeError with Chromium's error, or if Chromium has ended."""
         self.number += 1
         order = {"id": self.number, "method": method, "params": parameters}
         os.write(self.out, json.dumps(order | ({"sessionId": session} if session else {})).encode() + b"\0")
@@ -74,12 +74,12 @@ class Tab:
         self.browser, self.session = browser, session
 
     def value(self, expression):
-        """Of JavaScript, null where it throws."""
+        """Evaluates JavaScript; null if it throws."""
         answer = self.browser.ask("Runtime.evaluate", self.session, expression=expression, returnByValue=True)
         return answer["result"].get("value")
 
     def until(self, expression, seconds=60):
-        """Whether the expression came true in time."""
+        """Returns true if the expression becomes true in time."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             if self.value(expression):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// What the page must bear with the paper's building of 3x3 bays at 100 Hz: every row, 50 frames/s, 200
-// viewers, 2000 connections that dawdle, and an estimator that does not notice any of them.
+// Measures whether the page bears the paper's building of 3x3 bays at 100 Hz: every row, 50
+// frames/s, 200 viewers, 2000 slow connections, and an estimator that none of them disturbs.
 const {chromium} = require('playwright-core');
 const {spawn, spawnSync} = require('child_process');
 const fs = require('fs'), http = require('http'), net = require('net'), os = require('os'), path = require('path');
@@ -43,7 +43,7 @@ class Viewer {
   close() { this.request.destroy(); }
 }
 
-// Sends half a request, then a byte now and then; comes back when it is ended.
+// Sends half a request, then a byte now and then. Reconnects when it is closed.
 class Dawdler {
   constructor(address) {
     const {hostname, port} = new URL(address);
@@ -59,7 +59,8 @@ class Dawdler {
   close() { this.over = true; clearInterval(this.timer); this.socket.destroy(); }
 }
 
-// Plays the same samples to an estimator with so many viewers and dawdlers beside it; its estimates as a log.
+// Plays the same samples to an estimator beside this many viewers and slow connections. Returns
+// its estimates as a log.
 async function played(raw, count, slow = 0) {
   const sessions = path.join(work, `viewers-${count}-${slow}`);
   const recorder = start(program, 'record', config, '--url', url, '--no-check', '--no-report', '--quiet', '--out', sessions);
@@ -93,7 +94,7 @@ async function main() {
   console.log(`${kViewers} viewers: ${(100 * watched.share).toFixed(1)} % of a core, ${(watched.rate / 1e3).toFixed(1)} kB/s each, ${watched.dropped} told of lost events; none: ${(100 * alone.share).toFixed(1)} %`);
   expect(watched.share < kMaxCpu, `${kViewers} viewers cost less than ${100 * kMaxCpu} % of a core`);
   expect(watched.dropped === 0, 'none of them lost an event');
-  // The scenario itself loses a few.
+  // The scenario itself loses a few samples.
   expect(alone.lost === watched.lost && alone.lost < 10, 'no sample was lost on the way');
   const size = fs.statSync(alone.log).size;
   expect(spawnSync(program, ['diff', alone.log, watched.log], {stdio: 'inherit'}).status === 0 && size > 1e5, `the estimates are the same bytes with 0 and ${kViewers} viewers (${size} bytes of log)`);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// The page of `framewatch serve` beside `framewatch run`, `framewatch record` and a virtual test over LCM:
-// what it shows is what LCM carried, a drop of stiffness is named in time, a session is recorded and its
-// report opened, and silence is said.
+// Runs `framewatch serve` beside `framewatch run`, `framewatch record` and a virtual test over
+// LCM. The page must show the messages of LCM, name a drop of stiffness in time, record a session,
+// open its report, and report silence.
 const {chromium} = require('playwright-core');
 const {spawn, execFileSync} = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');

@@ -46,9 +46,9 @@ bool Announcer::knows(int parameter) const {
   return baseline != nullptr && baseline->knows(static_cast<std::size_t>(parameter));
 }
 
-/// Today's event: one element in `place`, its change in per cent. Several elements would be
-/// separated by commas. A place that is no element is the whole building; an event without a
-/// standard error has no size yet.
+/// Reads an event: one element in `place`, its change in percent. Several elements would be
+/// separated by commas. A place that is not an element means the whole building. An event without
+/// a standard error has no size yet.
 void Announcer::on_event(const event_t& e) {
   if (e.kind != kKind) return;
   Announcement out;

@@ -14,13 +14,13 @@ namespace {
 constexpr double kMassOff = 0.02, kProfileOff = 0.05;  // standard deviations
 constexpr double kDesignOff = 0.15;                    // at most
 constexpr double kMinLoss = 0.05, kMaxLoss = 0.40, kUniformLoss = 0.05;
-// Of the slow softening. Slip scatters from window to window: more than this and no baseline is
-// learned within kLearned_s.
+// Limits of the slow softening. Slip scatters from window to window, and with more of it no
+// baseline is learned within kLearned_s.
 constexpr double kMinSoftening = 0.05, kMaxSoftening = 0.20, kSlipOfThat = 0.4;
 constexpr double kTwoElements = 1.0 / 3, kApart = 0.5;  // shares of cases
 constexpr double kMinApart_s = 2, kMaxApart_s = 8;
 constexpr double kLoud = 2.5;
-// Levels of the ground's motion and until when they last, s.
+// Levels of the ground's motion and the end of each, s.
 constexpr double kAmbient = 0.02, kCoda = 0.5;
 constexpr double kLearn[][2] = {{20, 0.6}, {40, 0.2}, {60, 1.0}, {80, 0.4}, {100, 0.8}};
 constexpr double kQuake_s = 105, kPause_s = 120, kAgain_s = 130, kOver_s = 135, kOverAgain_s = 145;
@@ -38,7 +38,7 @@ StudyBuilding draw_building(estimator::Random& random) {
   return stories_with_channels(12, {3, 6, 9, 12});
 }
 
-/// Truth off what the estimator is told.
+/// Draws a truth that differs from the estimator's design.
 void draw_errors(estimator::Random& random, ChangeCase& out) {
   out.truly = out.told.config.structure;
   out.theta = design_off(out.told.config, kDesignOff, out.seed + 7);

@@ -15,12 +15,13 @@ struct ChangeRunOptions {
   double learn_s = 80;        ///< [watch] learn_s: four of the five levels before the earthquake
 };
 
-/// What was said in a case.
+/// The statements of the program in a case.
 struct ChangeRun {
   std::vector<Announcement> said;
-  std::vector<bool> watched;       ///< by parameter: with a baseline when the earthquake began
+  std::vector<bool> watched;  ///< by parameter: true if it had a baseline when the earthquake began
   std::vector<std::string> names;  ///< of all parameters
-  std::vector<std::string> without_baseline;  ///< that should be watched and had none then
+  std::vector<std::string>
+      without_baseline;  ///< parameters that should be watched but had no baseline then
 };
 
 ChangeRun run_change(const ChangeCase& of, const ChangeRunOptions& options = {});

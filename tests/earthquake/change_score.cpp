@@ -9,15 +9,15 @@ namespace framewatch::earthquake {
 namespace {
 
 constexpr double kUnchanged = 1e-9;
-constexpr double kWithin = 2;          // earlier errors that a later size stays within
-constexpr double kGrows = 1.05;        // rounding of an error does not count
+constexpr double kWithin = 2;          // allowed distance between sizes, in earlier errors
+constexpr double kGrows = 1.05;        // allowed growth of an error by rounding
 constexpr double kStandsStill_s = 15;  // after a second change of one group
 
 bool names(const Announcement& a, int parameter) {
   return a.parameter == parameter && a.state != AnnouncementState::cleared;
 }
 
-/// Judges one element of a case.
+/// Scores one element of a case.
 class Judge {
  public:
   Judge(const ChangeCase& of, const ChangeRun& run, int parameter)
@@ -28,7 +28,7 @@ class Judge {
       if (std::abs(now - before) > kUnchanged) moves_.push_back(loss.at_s);
       before = now;
     }
-    // Losses at one time are one move.
+    // Losses at the same time count as one change.
     moves_.erase(std::unique(moves_.begin(), moves_.end()), moves_.end());
   }
 
@@ -57,7 +57,7 @@ class Judge {
 
  private:
   double truth(double time_s) const { return case_.truth(time_s)[p_]; }
-  /// Whether no further loss has moved the truth of a group a short while ago.
+  /// Returns true if no further loss has changed the truth of a group shortly before.
   bool stands_still(double time_s) const {
     return std::none_of(moves_.begin() + 1, moves_.end(), [&](double moved_s) {
       return time_s >= moved_s && time_s < case_.visible_s(moved_s) + kStandsStill_s;
@@ -78,7 +78,7 @@ class Judge {
     if (newest->state == AnnouncementState::cleared) return {true, true};
     return size_of(*newest, time_s);
   }
-  /// Later sizes beside earlier ones, while the truth is the same.
+  /// Compares later sizes with earlier ones while the truth is the same.
   static void compare(ElementScore& out) {
     for (std::size_t later = 1; later < out.sizes.size(); ++later)
       for (std::size_t earlier = 0; earlier < later; ++earlier) {
@@ -94,7 +94,7 @@ class Judge {
   const ChangeCase& case_;
   const ChangeRun& run_;
   std::size_t p_;
-  std::vector<double> moves_;  ///< times at which the element's truth changes, s
+  std::vector<double> moves_;  ///< times at which the true stiffness of the element changes, s
 };
 
 }  // namespace

@@ -14,7 +14,8 @@ namespace framewatch::earthquake {
 namespace {
 
 constexpr double kMinCoverage = 0.92, kMaxCoverage = 0.99, kMaxNeighbours = 0.01;
-constexpr double kMaxMoved = 0.05;  // share of elements whose size leaves two earlier errors
+constexpr double kMaxMoved =
+    0.05;  // share of elements whose size differs by more than two earlier errors
 
 struct Line {
   std::string title;

@@ -14,11 +14,11 @@ struct ScoredCase {
   CaseScore score;
 };
 
-/// The tables of docs/accuracy.md, Markdown.
+/// Returns the tables of docs/accuracy.md as Markdown.
 std::string change_tables(const std::vector<ScoredCase>& cases);
 
-/// What must be reached. most_delay_s: of the median time to the first announcement; infinite:
-/// nothing is asked.
+/// Returns the requirements. most_delay_s: limit of the median time to the first announcement;
+/// infinite: no limit.
 std::vector<Demand> change_demands(const std::vector<ScoredCase>& cases, double most_delay_s);
 
 }  // namespace framewatch::earthquake

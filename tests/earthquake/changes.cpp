@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// changes: what is announced of a change of stiffness, when, and how right its size is.
+// changes: measures when changes of stiffness are announced and how right their sizes are.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -20,14 +20,15 @@ constexpr const char* kUsage =
 
 Runs the daemon's estimation with [watch] on simulated earthquakes in which one or two elements lose
 5 to 40 % of their stiffness, on a fifth as many without a change, and on a tenth as many in which
-everything loses 5 %. Prints what is announced, when, and how right its size is, as Markdown.
+every element loses 5 %. Prints the announcements, their times and the errors of their sizes as
+Markdown.
 --cases       cases with a loss (500)
---seed        of all cases (1)
+--seed        seed of all cases (1)
 --jobs        threads (one per processor)
 --hop         seconds between windows (0.01)
 --most-delay  largest median time to the first announcement, s (none)
---only        runs this case alone, from 0: controls follow the losses. Prints every announcement
-exit: 0 what must be reached is reached, 1 something is not, 2 usage
+--only        runs only this case (from 0; controls follow the losses) and prints its announcements
+exit: 0 all requirements hold, 1 one does not, 2 usage
 )";
 
 struct Numbered {

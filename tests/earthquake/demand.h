@@ -5,7 +5,7 @@
 
 namespace framewatch::earthquake {
 
-/// One line of what must be reached, and whether it is.
+/// A requirement, and whether it holds.
 struct Demand {
   std::string text;
   bool holds = false;

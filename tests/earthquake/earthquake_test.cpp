@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The studies of an earthquake's minutes judge right: known answers, and short runs of both.
+// Tests the studies of an earthquake's minutes with known answers and short runs of both.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -35,7 +35,7 @@ TEST(Coverage, OfGaussianErrorsIs95Percent) {
   EXPECT_NEAR(too_small.rms_of_errors(), 2, 0.04);
 }
 
-TEST(Coverage, CountsValuesOfOneCaseAsOne) {
+TEST(Coverage, CountsAllValuesOfACaseOnce) {
   estimator::Random random(6);
   Coverage c;
   for (int i = 0; i < 1000; ++i) {
@@ -45,7 +45,7 @@ TEST(Coverage, CountsValuesOfOneCaseAsOne) {
   EXPECT_NEAR(c.std_error(), std::sqrt(0.95 * 0.05 / 1000), 2e-3);
 }
 
-TEST(ChangeCase, KnowsWhatAGroupLoses) {
+TEST(ChangeCase, ComputesTheLossOfAGroup) {
   ChangeCase of;
   of.told = stories_with_channels(6, {2, 4, 6});
   of.truly = of.told.config.structure;
@@ -58,7 +58,7 @@ TEST(ChangeCase, KnowsWhatAGroupLoses) {
   EXPECT_NEAR(of.truth(25)[1], 0, 1e-12);
 }
 
-TEST(ChangeCase, DrawsTheSameAgain) {
+TEST(ChangeCase, DrawsTheSameCaseFromTheSameSeed) {
   for (int i = 0; i < 5; ++i)
     EXPECT_EQ(change_case(ChangeKind::loss, kSeed, i).text(),
               change_case(ChangeKind::loss, kSeed, i).text());
@@ -76,7 +76,7 @@ ChangeCase plain_case() {
   return of;
 }
 
-TEST(ChangeScore, JudgesWhatIsSaid) {
+TEST(ChangeScore, ScoresEveryAnnouncement) {
   const ChangeCase of = plain_case();
   ChangeRun run;
   run.watched = {true, true, true, false, false, false};
@@ -111,8 +111,8 @@ TEST(ChangeScore, JudgesWhatIsSaid) {
   EXPECT_EQ(score.early, 1);
 }
 
-/// An estimator that knows the truth up to a Gaussian error reaches what must be reached.
-TEST(ChangeScore, IsContentWithHonestSizes) {
+/// An estimator that knows the truth up to a Gaussian error meets every requirement.
+TEST(ChangeScore, AcceptsHonestErrors) {
   std::vector<ScoredCase> cases;
   estimator::Random random(8);
   for (int i = 0; i < 500; ++i) {
@@ -127,8 +127,8 @@ TEST(ChangeScore, IsContentWithHonestSizes) {
   for (const Demand& d : change_demands(cases, 1.5)) EXPECT_TRUE(d.holds) << d.text;
 }
 
-/// The simulation and the daemon's estimation agree on a plain loss. Without noise, linear.
-TEST(Changes, FindAPlainLossAndItsSize) {
+/// The simulation and the daemon's estimation agree on a simple loss. Without noise, linear.
+TEST(Changes, FindAPlainLossWithItsSize) {
   ChangeCase of = plain_case();
   ChangeRunOptions options;
   options.noise_ratio = 1e-3;
@@ -143,8 +143,8 @@ TEST(Changes, FindAPlainLossAndItsSize) {
   EXPECT_EQ(score.early, 0);
 }
 
-/// Nothing is interrupted, nothing is noisy, the design is right: values are right.
-TEST(Interruptions, HaveExactValuesWhereNothingIsWrong) {
+/// Without interruption and noise, and with the right design, values are right.
+TEST(Interruptions, GiveExactValuesWithoutInterruption) {
   constexpr double kMaxError = 1e-3;  // of the sampled motion, without noise
   const InterruptionResult r = run_interruption({0, false, Interruption::none, 0, kSeed, 1e-6});
   for (const std::size_t window : {0U, 1U}) {
@@ -156,7 +156,7 @@ TEST(Interruptions, HaveExactValuesWhereNothingIsWrong) {
   }
 }
 
-TEST(Interruptions, CountFromTheEndOfAnInterruption) {
+TEST(Interruptions, CountTimeFromTheEndOfAnInterruption) {
   const InterruptionResult r =
       run_interruption({0, false, Interruption::all_missing, 2, kSeed, 0.01});
   const FirstWindow& first = r.first[kMain];
@@ -169,7 +169,7 @@ TEST(Interruptions, CountFromTheEndOfAnInterruption) {
   EXPECT_EQ(while_it_lasts, 0);
 }
 
-TEST(Interruptions, AreTheSameOnAnyNumberOfThreads) {
+TEST(Interruptions, GiveTheSameResultOnAnyNumberOfThreads) {
   std::vector<InterruptionCase> cases;
   for (const double length_s : {0.05, 0.5})
     cases.push_back({0, true, Interruption::one_missing, length_s, kSeed, 0.01});

@@ -21,19 +21,19 @@ namespace {
 constexpr double kRate_hz = 100;
 constexpr double kDesignOff = 0.3;
 constexpr double kBuildUp_s = 0.2;               // the motion is strong at once
-constexpr double kEarliest_s = 8, kOver_s = 10;  // of strong motion before the instant
+constexpr double kEarliest_s = 8, kOver_s = 10;  // strong motion before the instant
 constexpr double kMinRest_s = 3, kMaxRest_s = 5;
 constexpr double kWatched_s = 10.05;     // after the instant
-constexpr int kAway = 5;                 // seconds that a channel is away when it comes and goes
+constexpr int kAway = 5;                 // seconds of each absence when a channel comes and goes
 constexpr int kEvery = 10;               // hops between values that are counted
 constexpr double kErrorWithin_s = 0.26;  // 1-s windows are a quarter of a second apart
 constexpr double kRounding_s = 1e-6;     // of instants
 constexpr std::array<double, 5> kLengths_s{0.05, 0.5, 2, 10, 60};
 
-/// What the channels measure, and which samples the pipeline gets.
+/// The channels' measurements, and which samples the pipeline gets.
 struct Record {
-  Eigen::MatrixXd accel;          ///< instants x axes, m/s^2
-  double from_s = 0, zero_s = 0;  ///< of the interruption: times are counted from its end
+  Eigen::MatrixXd accel;                       ///< instants x axes, m/s^2
+  double from_s = 0, zero_s = 0;               ///< of the interruption; times count from its end
   std::function<bool(double, int)> delivered;  ///< (time, axis)
 };
 
@@ -100,7 +100,7 @@ Record make_record(const InterruptionCase& of, estimator::PipelineConfig& config
     estimator::Random noise(of.seed, 100 + static_cast<std::uint64_t>(a));
     for (double& value : out.accel.col(a)) value += sigma.back() * noise.normal();
   }
-  for (double& v : sigma) v = std::max(v, 1e-9);  // without noise rows still need weights
+  for (double& v : sigma) v = std::max(v, 1e-9);  // rows need weights even without noise
   set_noise(sigma, config);
   return out;
 }
@@ -110,7 +110,7 @@ ParameterGroup group_of(estimator::ParameterKind kind) {
   return kind == estimator::ParameterKind::panel_stiffness ? panels : dampings;
 }
 
-/// Collects what the pipeline publishes.
+/// Collects the published values.
 class Collector {
  public:
   Collector(const estimator::ParameterTable& table, Eigen::VectorXd truth, const Record& record)

@@ -14,7 +14,8 @@ namespace framewatch::earthquake {
 namespace {
 
 constexpr double kLatest_s = 1.2, kMinCoverage = 0.90, kMaxCoverage = 0.99;
-constexpr double kAsOften = 0.05;  // share of cases or of time that an interruption may cost
+constexpr double kAsOften =
+    0.05;  // largest share of cases or of time that an interruption may cost
 
 using Chosen = std::function<bool(const InterruptionCase&)>;
 
@@ -98,7 +99,7 @@ struct Run {
     });
     return all > 0 ? static_cast<double>(count) / all : 0;
   }
-  /// All bins after the interruption, or one.
+  /// Selects one bin, or all bins after the interruption.
   Coverage coverage(const Chosen& chosen, int window, int bin, int group) const {
     Coverage out;
     each(chosen, [&](int i, const InterruptionResult& r) {
@@ -250,7 +251,8 @@ std::vector<Demand> interruption_demands(const std::vector<InterruptionCase>& ca
   const Run run{cases, results};
   std::vector<Demand> out;
   const auto control = [](const InterruptionCase& c) { return !is_interrupted(c); };
-  // Where too little moves within a second nothing can be published, interrupted or not.
+  // If too little moves within a second, nothing can be published, with or without an
+  // interruption.
   const auto in_time = [&](const Chosen& chosen) {
     const std::vector<double> firsts = run.firsts(chosen, kShort, &FirstWindow::any_s);
     const auto count =

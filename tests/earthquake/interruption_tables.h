@@ -9,11 +9,11 @@
 
 namespace framewatch::earthquake {
 
-/// The tables of docs/accuracy.md, Markdown. Results are in the order of the cases.
+/// Returns the tables of docs/accuracy.md as Markdown. Results are in the order of the cases.
 std::string interruption_tables(const std::vector<InterruptionCase>& cases,
                                 const std::vector<InterruptionResult>& results);
 
-/// What must be reached.
+/// Returns the requirements.
 std::vector<Demand> interruption_demands(const std::vector<InterruptionCase>& cases,
                                          const std::vector<InterruptionResult>& results);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// interruptions: what is estimated after a start in motion or an interruption, and how soon.
+// interruptions: measures estimates after an interruption or a start in motion, and how soon they
+// return.
 #include <algorithm>
 #include <cstdio>
 #include <thread>
@@ -17,14 +18,14 @@ constexpr const char* kUsage =
     R"(usage: interruptions [--seeds N] [--seed N] [--jobs N] [--building N] [--noise PERCENT]
 
 Runs three buildings, with a right design and one off by 30 %, through starts of motion and
-interruptions of 0.05 to 60 s in strong motion. Prints how soon windows have values, how wrong these
-are and how often their stated 95 % intervals hold the truth, as Markdown.
+interruptions of 0.05 to 60 s in strong motion. Prints as Markdown how soon windows have values, the
+errors of these values and how often their stated 95 % intervals contain the truth.
 --seeds     motions of every building, design and interruption (6)
---seed      first of them (1)
+--seed      seed of the first motion (1)
 --jobs      threads (one per processor)
---building  only this one, from 0
---noise     of the sensors, % of the rms of each channel's strong motion (1)
-exit: 0 what must be reached is reached, 1 something is not, 2 usage
+--building  runs only this building, from 0
+--noise     noise of the sensors, % of the rms of each channel's strong motion (1)
+exit: 0 all requirements hold, 1 one does not, 2 usage
 )";
 
 int main(int count, char** arguments) {

@@ -61,7 +61,7 @@ void SofteningBuilding::rest() {
   time_s_ = 0;
 }
 
-/// The usual drifts and the rms of the channels under shaking of level 1; then at rest again.
+/// Measures the usual drifts and the channels' rms under shaking of level 1; returns to rest.
 void SofteningBuilding::learn_usual(double noise_ratio) {
   const auto instants = std::lround(kMeasured_s * kRate_hz);
   std::vector<double> squares(sigma_.size(), 0);
@@ -114,7 +114,7 @@ void SofteningBuilding::shake_ground(double level) {
   }
 }
 
-/// Force of an element's spring beyond its linear one, over its stiffness now, m.
+/// Returns the force of an element's spring beyond its linear part, over its present stiffness, m.
 double SofteningBuilding::beyond_linear(std::size_t e, double drift, double rate) {
   if (elements_[e].frame < 0) return 0;
   Frame& frame = frames_[e];

@@ -15,34 +15,34 @@
 
 namespace framewatch::earthquake {
 
-/// How the frames' stiffness follows the amplitude of their motion.
+/// Dependence of the frames' stiffness on the amplitude of their motion.
 enum class Softening {
   none,
   slow,     ///< k (1 - s A / (A + usual)), A the running rms drift: rises in 2 s, falls in 20 s
   slipping  ///< the catalogue's amplitude_dependence with half of it slip in joints, at 3 usual
 };
 
-/// A building of frames and panels on restless ground, element by element: central differences at
-/// 0.5 ms, another scheme than the estimator's, sampled behind an anti-alias filter. Frames may
-/// soften while they move; a loss of stiffness keeps the share of the softening.
+/// A building of frames and panels on moving ground, computed element by element with central
+/// differences at 0.5 ms (not the estimator's scheme) and sampled behind an anti-alias filter.
+/// Frames may soften while they move; a loss of stiffness keeps the share of softening.
 class SofteningBuilding {
  public:
   static constexpr double kRate_hz = 100;
 
-  /// theta: in the order of ParameterTable(structure), SI. amount: s above, or the share that is
-  /// lost at three times the usual drift. noise_ratio: of each channel, over the rms of its motion
-  /// under shaking of level 1.
+  /// theta: in the order of ParameterTable(structure), SI. amount: s above, or the share lost at
+  /// three times the usual drift. noise_ratio: of each channel, over the rms of its motion under
+  /// shaking of level 1.
   SofteningBuilding(const estimator::Structure& structure, const Eigen::VectorXd& theta,
                     const std::vector<estimator::SensorAxis>& axes, Softening softening,
                     double amount, double noise_ratio, std::uint64_t seed);
 
   /// Standard deviation of every channel's noise, m/s^2.
   const std::vector<double>& sigma() const { return sigma_; }
-  /// New stiffness of all elements from now on, as a share of that at the beginning; in the order
-  /// of the stiffness half of theta. Motion goes on from where it is.
+  /// Sets the stiffness of all elements from now on, relative to the initial one, in the order of
+  /// the stiffness half of theta. The motion continues.
   void set_remaining(const Eigen::VectorXd& remaining) { remaining_ = remaining; }
-  /// What the channels show at the next instant, m/s^2. level: of the ground's motion; 1: strong,
-  /// about 1 m/s^2 rms.
+  /// Returns the channels' measurements at the next instant, m/s^2. level: of the ground's motion;
+  /// 1: strong, about 1 m/s^2 rms.
   const Eigen::VectorXd& next(double level);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace framewatch::earthquake {
 
-/// A building whose design is right. Its sensors have no noise yet, its options are the defaults.
+/// A building with the right design. Its sensors have no noise, its options are the defaults.
 struct StudyBuilding {
   std::string name;
   estimator::PipelineConfig config;

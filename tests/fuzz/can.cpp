@@ -36,7 +36,8 @@ CanExample can_example(const char* name) {
   return out;
 }
 
-/// One for each way of timing: SYNC, clocks, counters, CAN FD, 29-bit ids, several buses.
+/// One configuration for each kind of timing: SYNC, clocks, counters, CAN FD, 29-bit ids, several
+/// buses.
 const std::vector<CanExample>& can_examples() {
   static const std::vector<CanExample> examples = [] {
     std::vector<CanExample> out;
@@ -48,14 +49,14 @@ const std::vector<CanExample>& can_examples() {
   return examples;
 }
 
-/// What a frame is: its bits.
+/// The contents of a frame.
 enum : std::uint8_t {
-  kKnownId = 1,  ///< that of a frame of the traffic
+  kKnownId = 1,  ///< taken from a frame of the traffic
   kExtended = 2,
   kRemote = 4,
   kError = 8,
   kFd = 16,
-  kLeap = 32,  ///< its time is any, else a little after the one before
+  kLeap = 32,  ///< arbitrary, or a little after the one before
 };
 
 CanFrame take_frame(Pieces& input, const CanExample& example, std::int64_t& now_us) {
@@ -73,7 +74,7 @@ CanFrame take_frame(Pieces& input, const CanExample& example, std::int64_t& now_
     frame.id = input.take<std::uint32_t>() & (frame.extended ? 0x1fffffff : 0x7ff);
   }
   const auto later_us = input.take<std::int16_t>();
-  // A kernel's clock, however wrong, is within some hundred thousand years.
+  // A kernel's clock is never wrong by more than some hundred thousand years.
   now_us = what & kLeap ? input.take<std::int64_t>() / 4 : now_us + later_us;
   frame.stamp_us = now_us;
   frame.length = static_cast<std::uint8_t>(input.take<std::uint8_t>() % (frame.fd ? 65 : 9));

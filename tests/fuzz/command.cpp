@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a connection to a daemon's command socket sends: the packet, and the command in it.
+// A connection to a daemon's command socket: the packet and the command in it.
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/session_command_t.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The database of a history, changed by somebody, and what is asked of it.
+// The database of a history with foreign changes, and queries of it.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -41,7 +41,7 @@ daemon::SummaryBatch two_periods() {
   return batch;
 }
 
-/// Bytes of a database as this program writes it, all in one file.
+/// Bytes of a database that this program wrote, all in one file.
 const std::vector<std::uint8_t>& good_database() {
   static const std::vector<std::uint8_t> bytes = [] {
     const std::string path = daemon::summary_file(history_settings().directory);
@@ -76,7 +76,7 @@ void ask_database(Bytes input) {
   if (what & 64) asked.parameters = {text_of(pieces.take_bytes(pieces.take<std::uint8_t>()))};
   begin_anew(changed(good_database(), pieces));
   (void)daemon::history(asked);
-  if (what & 128) {  // and `run` goes on with it
+  if (what & 128) {  // `run` continues with it
     daemon::SummaryStore store(history_settings());
     if (store.open().empty() && store.add(two_periods()).empty()) {
       (void)store.open_periods();

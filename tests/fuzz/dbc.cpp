@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A DBC file, and numbers in frames as it says.
+// A DBC file, and numbers decoded from frames with it.
 #include <array>
 
 #include "drivers/can/can_frame.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a browser, or something else, sends to the page's server; over a connection, as it comes.
+// Requests of a browser, or of anything else, to the page's server over a connection.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -29,7 +29,7 @@ constexpr std::string_view kLastRequest =
     "\r\n\r\nGET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
 constexpr std::string_view kSecret = "nobody may read this";
 
-/// A server on a free port, with a session in its folder and a secret beside that.
+/// A server on a free port, with a session in its folder and a secret file beside it.
 class Page {
  public:
   Page()
@@ -44,7 +44,8 @@ class Page {
     require(socket >= 0 && server_.start(socket, error), error.c_str());
   }
 
-  /// What it answers; of a stream of events the beginning. A last request asks it to close.
+  /// Returns the answer; of an event stream only the beginning. A last request asks the server to
+  /// close.
   std::string ask(Bytes request) {
     const int s = connected();
     const timeval patience{0, 100'000};  // for a server that waits for the rest of a request
@@ -57,7 +58,7 @@ class Page {
     for (ssize_t got; answer.find("event-stream") == std::string::npos &&
                       (got = ::recv(s, part, sizeof part, 0)) > 0;)
       answer.append(part, static_cast<std::size_t>(got));
-    const linger at_once{1, 0};  // the port is free again
+    const linger at_once{1, 0};  // frees the port
     ::setsockopt(s, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
     ::close(s);
     view_.flush();
@@ -66,7 +67,7 @@ class Page {
   }
 
  private:
-  /// A host that is short of ports, or of time to accept, is no finding: it is asked again.
+  /// A host that lacks ports, or time to accept, is not a finding: the request is repeated.
   int connected() {
     sockaddr_in to{};
     to.sin_family = AF_INET;

@@ -12,10 +12,10 @@
 
 namespace framewatch::test {
 
-/// What a fuzzer is fed with.
+/// Tools that read a fuzzer's input.
 using Bytes = std::span<const std::uint8_t>;
 
-/// Takes an input apart, from its front; what it does not hold any more is 0 or empty.
+/// Reads an input piece by piece from its front. Missing pieces are 0 or empty.
 class Pieces {
  public:
   explicit Pieces(Bytes bytes) : bytes_(bytes) {}
@@ -33,7 +33,7 @@ class Pieces {
     bytes_ = bytes_.subspan(piece.size());
     return piece;
   }
-  /// Of at most 65535 bytes, which says its size first.
+  /// Reads a size of at most 65535 and that many bytes.
   Bytes take_block() { return take_bytes(take<std::uint16_t>()); }
   Bytes rest() { return take_bytes(bytes_.size()); }
 
@@ -41,7 +41,7 @@ class Pieces {
   Bytes bytes_;
 };
 
-/// Puts an input together as Pieces takes it apart.
+/// Writes an input in the format that Pieces reads.
 class PiecesWriter {
  public:
   template <typename T>
@@ -84,14 +84,15 @@ class InputFile {
   std::string path_;
 };
 
-/// `whole` with the changes that an input asks for: numbers replaced, bytes cut out, doubled and
-/// put in. So what is fuzzed is almost right, in whatever format this program writes today.
+/// Returns `whole` with the changes that an input requests: numbers replaced, bytes removed,
+/// doubled and inserted. So the result is almost valid, in the format that this program writes
+/// today.
 std::vector<std::uint8_t> changed(const std::vector<std::uint8_t>& whole, Pieces& input);
 
-/// Ends the program, which the fuzzer takes for a finding, unless `holds`.
+/// Ends the program unless `holds`, which the fuzzer reports as a finding.
 void require(bool holds, const char* what);
 
-/// The content of a file of the repository.
+/// Returns the content of a file of the repository.
 std::string repository_file(const std::string& path);
 
 }  // namespace framewatch::test

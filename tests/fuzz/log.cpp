@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An LCM event log, plain or compressed: whoever reads one.
+// An LCM event log, plain or compressed, for every reader of logs.
 #include <cstdint>
 
 #include "daemon/monitor/estimates/session_estimates.h"
@@ -16,7 +16,7 @@ namespace {
 
 using drivers::LogRead;
 
-/// What `framewatch repair` does: every byte belongs to an event or to a damage.
+/// Runs the code of `framewatch repair`: every byte must belong to an event or to a damage.
 void survey(const std::string& path) {
   drivers::LcmLogReader reader;
   if (!reader.open(path)) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// fuzz TARGET [libFuzzer's arguments], fuzz TARGET --seeds FOLDER, fuzz --list. CONTRIBUTING.md
-// says more.
+// fuzz TARGET [libFuzzer's arguments], fuzz TARGET --seeds FOLDER, fuzz --list. See
+// CONTRIBUTING.md.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -18,7 +18,7 @@ const FuzzTarget* const kTargets[] = {
     &kCandumpTarget,  &kDbcTarget,      &kConfigTarget,   &kScenarioTarget,   &kExpectationTarget,
     &kBaselineTarget, &kStateTarget,    &kDatabaseTarget, &kSessionTarget,    &kHttpTarget,
     &kCommandTarget};
-/// libFuzzer begins itself anew, to merge for one: with the arguments it saw, and this.
+/// libFuzzer restarts itself, for example to merge, with its own arguments and this one.
 constexpr const char* kTargetVariable = "FRAMEWATCH_FUZZ_TARGET";
 const FuzzTarget* chosen = nullptr;
 
@@ -34,7 +34,7 @@ void write_seeds(const FuzzTarget& target, const std::string& folder) {
     std::ofstream(folder + "/seed-" + std::to_string(number++), std::ios::binary) << seed;
 }
 
-/// Takes the target's name out of the arguments.
+/// Removes the target's name from the arguments.
 void choose(int* count, char*** arguments) {
   const char* inherited = std::getenv(kTargetVariable);
   const std::string name = inherited ? inherited : *count > 1 ? (*arguments)[1] : "";
@@ -61,8 +61,8 @@ void choose(int* count, char*** arguments) {
 }
 
 #ifndef __clang__
-/// libFuzzer wants to see that inputs differ in what they do; without clang's instrumentation,
-/// their sizes stand for that.
+/// libFuzzer needs coverage that differs between inputs. Without clang's instrumentation, their
+/// sizes serve instead.
 __attribute__((section("__libfuzzer_extra_counters"))) std::uint8_t size_seen[4096];
 #endif
 

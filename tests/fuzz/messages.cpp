@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every message type: decoded, written again, shown.
+// Every message type: decoded, encoded again, printed.
 #include <framewatch/message_layouts.hpp>
 
 #include <nlohmann/json.hpp>
@@ -55,7 +55,7 @@ void read_message(const std::vector<std::uint8_t>& payload) {
   show(*message);
 }
 
-/// Payload of the type with this number: its fingerprint, and what the input says.
+/// Returns a payload of the type with this number: its fingerprint, then bytes of the input.
 void read_one(Bytes input) {
   Pieces pieces(input);
   const int wanted = pieces.take<std::uint8_t>();

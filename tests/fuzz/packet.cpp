@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Datagrams of LCM's UDP multicast, of several senders, and the messages that their parts make.
+// Datagrams of LCM's UDP multicast from several senders, and the messages joined from their parts.
 #include "drivers/lcm/multicast/fragment_assembly.h"
 #include "drivers/lcm/multicast/lcm_packet.h"
 #include "tests/fuzz/targets.h"
@@ -19,7 +19,7 @@ void require_sound(const drivers::LcmPacket& packet) {
   require(packet.channel.empty() == (packet.part != 0), "a channel in part 0 alone");
 }
 
-/// Who sends it, and the datagram, one after the other.
+/// Reads sender and datagram, one after the other.
 void receive(Bytes input) {
   Pieces pieces(input);
   FragmentAssembly assembly([](std::string_view channel) { return channel == kWantedChannel; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Messages one after the other, as `framewatch serve` hears them: the page and the metrics.
+// Messages in sequence, as `framewatch serve` receives them, for the page and the metrics.
 #include <array>
 
 #include "daemon/page/metrics/metrics.h"
@@ -30,7 +30,7 @@ std::vector<std::string> page_channels() {
   return channels;
 }
 
-/// Every event is one of a name and of one line of data.
+/// Checks that every event has a name and one line of data.
 void require_events(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text.find("\n\n", at);

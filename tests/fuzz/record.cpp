@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Record files: text of every format, miniSEED, MATLAB; and what `framewatch init` makes of their
-// titles.
+// Record files: text of every format, miniSEED, MATLAB; and the places that `framewatch init`
+// reads from their titles.
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -20,7 +20,7 @@ namespace {
 
 using drivers::RecordFormat;
 
-/// No title puts a column into two places.
+/// Checks that no title puts a column into two places.
 void place_columns(const std::vector<std::string>& titles) {
   estimator::Structure building;
   building.stories = 2;
@@ -34,7 +34,7 @@ void place_columns(const std::vector<std::string>& titles) {
 
 void read_and_check(Bytes file_bytes, const drivers::RecordOptions& options);
 
-/// How it is to be read, then the file.
+/// Reads the options, then the file.
 void read_record_file(Bytes input) {
   Pieces pieces(input);
   const auto how = pieces.take<std::uint8_t>();
@@ -48,7 +48,7 @@ void read_record_file(Bytes input) {
   read_and_check(pieces.rest(), options);
 }
 
-/// A miniSEED file, changed.
+/// Returns a changed miniSEED file.
 void read_changed_miniseed(Bytes input) {
   Pieces pieces(input);
   const auto how = pieces.take<std::uint8_t>();
@@ -67,7 +67,7 @@ void read_changed_miniseed(Bytes input) {
   read_and_check(bytes, options);
 }
 
-/// Bytes of a MATLAB file of level 5. What HDF5 makes of damage is its own affair.
+/// Returns bytes of a MATLAB file of level 5. Damage that HDF5 reads itself is not tested.
 const std::vector<std::uint8_t>& good_mat(bool packed) {
   static const auto make = [](matio_compression compression) {
     const std::string path = scratch_folder() + "/good.mat";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Messages one after the other, as `framewatch run` hears them: to the end of an estimation, whose
-// own messages must be good ones.
+// Messages in sequence, as `framewatch run` receives them, to the end of an estimation. The
+// messages that it publishes must be valid.
 #include <cmath>
 
 #include "daemon/monitor/estimation/estimation.h"

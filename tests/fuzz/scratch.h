@@ -5,7 +5,7 @@
 
 namespace framewatch::test {
 
-/// A folder of this process', below TMPDIR; whoever sets TMPDIR removes it.
+/// Returns a folder of this process below TMPDIR. The caller that sets TMPDIR removes it.
 const std::string& scratch_folder();
 
 void write_scratch_file(const std::string& path, const void* data, std::size_t size);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A state file a section of which somebody changed and signed again: the section is refused, or the
-// estimation goes on with it.
+// A state file with one changed section and a matching signature: the section is refused, or the
+// estimation continues with it.
 #include <optional>
 
 #include "daemon/monitor/estimation/state_file.h"
@@ -21,7 +21,7 @@ void shake(Estimation& estimation, ShakenNodes& nodes, int instants) {
   });
 }
 
-/// Of an estimation that has seen the motion so far.
+/// Returns the state of an estimation that has seen the motion so far.
 const daemon::SavedState& good_state() {
   static const daemon::SavedState state = [] {
     Estimation estimation(example_building(), {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// StationXML: its elements, and what is made of them for a record of that channel.
+// StationXML: its elements, and the calibration read from them for a record's channel.
 #include <cmath>
 #include <string>
 #include <vector>

@@ -8,13 +8,13 @@
 
 namespace framewatch::test {
 
-/// One reader of bytes from outside, or what is done with what it read.
+/// A reader of foreign bytes, or code that uses its result.
 struct FuzzTarget {
   const char* name;
-  /// Must return, whatever the bytes: a crash, a sanitizer's report, an exception, more than 10 s
-  /// or 1 GiB are findings.
+  /// Must return for any bytes. A crash, a sanitizer's report, an exception, more than 10 s or
+  /// more than 1 GiB is a finding.
   void (*run)(Bytes input);
-  /// Inputs to begin with, made of files of the repository and what the program itself writes.
+  /// Returns initial inputs, made of files of the repository and of the program's own output.
   std::vector<std::string> (*seeds)();
 };
 

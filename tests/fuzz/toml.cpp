@@ -21,7 +21,7 @@ const estimator::ParameterTable& example_parameters() {
   return table;
 }
 
-/// Paths in it are looked for where nothing is.
+/// Paths in the file point to a place without files.
 void read_configuration(Bytes input) {
   const std::string text = text_of(input);
   Problems problems;

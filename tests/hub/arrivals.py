@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""When which event was in the database, as `fleet serve` would read it."""
+"""Times at which events are in the database, as `fleet serve` reads it."""
 import threading
 import time
 
@@ -7,7 +7,7 @@ LOOK_S = 0.05
 
 
 class Arrivals:
-    """Looks at the database again and again, in a thread."""
+    """Queries the database again and again in a thread."""
 
     def __init__(self, postgres):
         self.session, self.at, self.lock, self.ends = postgres.session(), {}, threading.Lock(), False
@@ -16,7 +16,7 @@ class Arrivals:
 
     def look(self):
         while not self.ends:
-            # The newest are enough: what is older was seen before, or comes late and is looked up at the end.
+            # The newest suffice: older events were seen before, or arrive late and are found at the end.
             rows = self.session.ask("SELECT name, event.id FROM event JOIN building ON building.id = event.building "
                                     "WHERE kind = 'gap' ORDER BY event.id DESC LIMIT 2000") or []
             now = time.monotonic()
@@ -26,7 +26,7 @@ class Arrivals:
             time.sleep(LOOK_S)
 
     def seconds(self, sent):
-        """Of every event in `sent` ((building, number): time it was added) the seconds until it was there."""
+        """For every event in `sent` ((building, number): time it was added), the seconds until it is in the database."""
         with self.lock:
             return sorted(self.at[name, str(number)] - begin for (name, number), begin in sent.items()
                           if (name, str(number)) in self.at)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a hub and its workers make of bad input: messages that are none, floods, clocks that jump, a hub that is full,
-certificates that are over."""
+"""Bad input to a hub and its workers: malformed messages, floods, clocks that jump, a full hub, expired certificates."""
 import json
 import os
 import shutil
@@ -11,7 +10,7 @@ import lcm_event
 from building import Building
 from nats_client import Client
 
-FLOOD, BEYOND = 20_000, 300  # messages an hour that a worker takes of a building (docs/fleet.md), and what is beyond
+FLOOD, BEYOND = 20_000, 300  # limit of messages an hour from a building (docs/fleet.md), and the number sent beyond it
 PATIENCE_S = 120
 
 
@@ -61,15 +60,15 @@ class BadInput:
                                                           "Fw-Encoding": "zstd"})
         self.publish(client, "c1", row(9))
         client.round_trip()
-        self.must(until(lambda: self.events_of("c1") >= 1 and "zstd" in self.reasons()), "a good event passes six bad ones")
+        self.must(until(lambda: self.events_of("c1") >= 1 and "zstd" in self.reasons()), "a good event arrives after six bad ones")
         unknown = self.postgres.ask("SELECT count(*), min(type) FROM unknown")
-        self.must(unknown == "1|event_t", f"a foreign fingerprint is kept for later, and stops nothing ({unknown})")
+        self.must(unknown == "1|event_t", f"a message with an unknown fingerprint is kept for later and stops no other ({unknown})")
         said = self.reasons()
         for reason in ("its key names c2", "its key does not match its content", "its key (Nats-Msg-Id) is missing"):
             self.must(reason in said, f"refused: {reason}")
 
     def clocks(self):
-        """Events and clocks that jump over years: nothing is lost that the history has."""
+        """Events and clocks that jump over years: no event of the history is lost."""
         self.hub.enroll("c3")
         one = Building(self.hub, "c3")
         one.start()
@@ -85,10 +84,10 @@ class BadInput:
         self.publish(client, "c3", lcm_event.event(99, 2**62))
         self.publish(client, "c3", lcm_event.event(100, -(2**62)))
         client.round_trip()
-        self.must(until(lambda: self.events_of("c3") == 8), "so are those of the year 148 000")
+        self.must(until(lambda: self.events_of("c3") == 8), "events of the year 148 000 are stored too")
 
     def flood(self):
-        """By one worker, whose count is exact."""
+        """With one worker, whose count is exact."""
         self.hub.enroll("c4")
         self.hub.enroll("c5")
         self.workers.stop()
@@ -105,16 +104,16 @@ class BadInput:
                         self.events_of("c5") == 1, 300), "another building's event passes a flood")
         told = self.postgres.ask("SELECT name, sum(messages) FROM flooding JOIN building ON building.id = building GROUP BY 1")
         hours = self.postgres.number("SELECT count(DISTINCT hour) FROM flooding")
-        # The hour may end while it floods: then the count began anew.
-        self.must(told == f"c4|{BEYOND}" or hours > 1, f"what is beyond {FLOOD} an hour is counted, not stored ({told})")
-        self.must(self.events_of("c4") == FLOOD or hours > 1, f"{self.events_of('c4')} events of who floods are stored")
+        # If the hour ends during the flood, the count starts again.
+        self.must(told == f"c4|{BEYOND}" or hours > 1, f"messages beyond {FLOOD} an hour are counted but not stored ({told})")
+        self.must(self.events_of("c4") == FLOOD or hours > 1, f"{self.events_of('c4')} events of the flooding building are stored")
 
     def operator(self, subject, request=b""):
         client = Client(self.hub.client[0], self.hub.certificates, "operator", 20)
         return json.loads(client.request(subject, request, timeout_s=20) or b"{}")
 
     def full_hub(self):
-        """FW_RAW is full: pieces are refused and wait in the building; its events pass them."""
+        """FW_RAW is full: it refuses pieces, which wait in the building, while events pass."""
         self.hub.enroll("c6")
         one = Building(self.hub, "c6")
         one.start_run()
@@ -124,7 +123,7 @@ class BadInput:
         info = self.operator("$JS.API.STREAM.INFO.FW_RAW")["config"]
         self.workers.stop()
         filler = Client(self.hub.client[0], self.hub.certificates, "operator", 30)
-        for number in range(info["max_bytes"] // 250_000 + 400):  # at last small ones: no piece must fit
+        for number in range(info["max_bytes"] // 250_000 + 400):  # small ones last, so that no piece fits
             size = 249_500 if number < info["max_bytes"] // 250_000 + 1 else 1000
             filler.publish("fw.up.c6.raw.filler", b"\0" * size, {"Nats-Msg-Id": f"c6/raw/filler/{number}"})
             filler.round_trip(30)
@@ -132,7 +131,7 @@ class BadInput:
         now_us = int(time.time() * 1e6)
         answer = page.request("fw.down.c6.raw", json.dumps({"from_us": now_us - 10_000_000, "to_us": now_us}).encode(),
                               {"Fw-Who": "Ada", "Fw-Request": "raw-1", "Fw-Until": int(time.time()) + 60})
-        self.must(answer == b'{"ok":true}', f"raw samples are asked for ({answer})")
+        self.must(answer == b'{"ok":true}', f"the request for raw samples is accepted ({answer})")
         time.sleep(10)
         number = one.add_events(1)[0]
         one.until_acknowledged()
@@ -141,14 +140,14 @@ class BadInput:
         self.operator("$JS.API.STREAM.PURGE.FW_RAW")
         self.workers.start(2)
         whole = "SELECT count(*) FROM raw_piece WHERE request = 'raw-1' HAVING count(*) = max(pieces)"
-        self.must(until(lambda: self.postgres.number(whole) > 0, 180), "when there is room they come, all of them")
-        self.must(until(lambda: self.events_of("c6") > number), "events passed them")
+        self.must(until(lambda: self.postgres.number(whole) > 0, 180), "all pieces arrive when there is room")
+        self.must(until(lambda: self.events_of("c6") > number), "events arrived before them")
         one.samples.end()
         one.stop_run()
         one.stop()
 
     def expired(self):
-        """An uplink with a certificate that is over says so, and goes on with the new file by itself."""
+        """An uplink with an expired certificate reports it and continues with the new file by itself."""
         self.hub.enroll("c7")
         at, folder = f"{self.hub.certificates}/c7.pem", self.hub.certificates
         shutil.copy(at, f"{at}.good")
@@ -170,7 +169,7 @@ class BadInput:
             with open(log) as file:
                 print(file.read()[-1000:])
         time.sleep(3)
-        self.must(not one.acknowledged_keys(), "nothing passes with it")
+        self.must(not one.acknowledged_keys(), "no message passes with it")
         os.replace(f"{at}.good", at)
         begin = time.monotonic()
         one.until_acknowledged(180)

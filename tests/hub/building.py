@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A building at the hub: real `framewatch uplink`, real `framewatch run` where one is wanted, and events that this test
-adds to its history as `run` would."""
+"""A building at the hub: real `framewatch uplink`, on request real `framewatch run`, and events that this test
+adds to its history like `run`."""
 import os
 import shutil
 import signal
@@ -12,7 +12,7 @@ import lcm_event
 from hub import Process, free_ports
 
 HISTORY = ("history.sqlite", "uplink.sqlite")
-PERIODS_S = (2, 4, 8)  # of summaries: minutes would be hours here
+PERIODS_S = (2, 4, 8)  # periods of summaries: tests cannot wait minutes
 
 
 def at_hub(hub, name, ports=None):
@@ -42,11 +42,11 @@ class Building:
                        f'{at_hub(hub, name, ports)}')
         self.uplink = self.run = self.samples = self.database = None
         self.events = 0
-        self.before_cut = set()  # keys that were acknowledged before the building lost its power
+        self.before_cut = set()  # keys acknowledged before the building lost its power
         if history:
             self.start_run()
             if not self.wait_for_history():
-                raise RuntimeError(f"{name}: run makes no history")
+                raise RuntimeError(f"{name}: run creates no history")
             self.stop_run()
 
     def start_run(self):
@@ -57,7 +57,7 @@ class Building:
         self.run = None
 
     def start_samples(self, seconds=36_000, silent=(), silent_from_s=0):
-        """A virtual building that moves, for run to hear; channels that fall silent."""
+        """A moving virtual building for run, with channels that fall silent."""
         with open(f"{self.hub.root}/configs/scenario_table_two_story.toml") as file:
             scenario = file.read().replace("table_two_story.toml", "building.toml")
         with open(f"{self.folder}/scenario.toml", "w") as file:
@@ -68,7 +68,7 @@ class Building:
                                 str(seconds), "--quiet"], f"{self.folder}/simulate.log")
 
     def wait_for_history(self, seconds=30):
-        """The tables are `framewatch run`'s: it makes them."""
+        """`framewatch run` creates the tables."""
         path = f"{self.folder}/history/history.sqlite"
         end = time.monotonic() + seconds
         while time.monotonic() < end:
@@ -85,7 +85,7 @@ class Building:
         return False
 
     def add_events(self, count):
-        """As run does: into the history, and over LCM. Their numbers."""
+        """Adds events like `run`: to the history and over LCM. Returns their numbers."""
         numbers = range(self.events, self.events + count)
         rows = [lcm_event.event(i, message="message " * 20) for i in numbers]
         self.store(rows)
@@ -107,7 +107,7 @@ class Building:
         self.uplink = None
 
     def keep_stores(self):
-        """As the disk is now, for put_back_stores()."""
+        """Copies the stores as they are on the disk, for put_back_stores()."""
         old = f"{self.folder}/old"
         shutil.rmtree(old, ignore_errors=True)
         os.makedirs(old)
@@ -121,7 +121,7 @@ class Building:
                 target.close()
 
     def put_back_stores(self):
-        """A power cut of the building: everything is killed, and its disk is as it was some seconds before."""
+        """A power cut of the building: kills everything and restores its disk of some seconds before."""
         runs = self.run is not None
         self.stop(signal.SIGKILL)
         if runs:
@@ -140,7 +140,7 @@ class Building:
         self.start()
 
     def event_keys(self):
-        """Of every event that the history has."""
+        """The key of every event in the history."""
         rows = self.read("history.sqlite", "SELECT kind, id, time_us, state FROM event")
         return {self.event_key(*row) for row in rows}
 
@@ -163,7 +163,7 @@ class Building:
             database.close()
 
     def until_acknowledged(self, timeout_s=120):
-        """Seconds until every event is; raises when it is not in time."""
+        """Seconds until every event is acknowledged. Raises an error after the time limit."""
         begin = time.monotonic()
         while lacking := len(self.event_keys() - self.acknowledged_keys()):
             if time.monotonic() - begin > timeout_s:

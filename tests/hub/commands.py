@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Commands of people at the page to a building that moves: who may give them, what comes of each, what the journal says."""
+"""Commands that people give on the page to a moving building: rights, effects and journal entries."""
 import json
 import os
 import subprocess
@@ -13,7 +13,7 @@ import lcm_event
 from building import Building
 from page import Page
 
-SILENT, SILENT_FROM_S, FETCHED_S = ("F1-Y1", "F2-X2"), 40, 10  # which sensors fall silent and when; what is fetched
+SILENT, SILENT_FROM_S, FETCHED_S = ("F1-Y1", "F2-X2"), 40, 10  # silent sensors and times; the fetched stretch
 WAIT_S = 90
 SECOND_US = 1_000_000
 VIEWS = {"#/": "document.querySelector('main tbody tr td.name a').textContent === 'd1'",
@@ -42,7 +42,7 @@ class Commands:
         return answer["request"] if status == 202 else status
 
     def outcome(self, request):
-        """What the journal says that the building answered; None: nothing yet."""
+        """The building's answer in the journal; None if there is none yet."""
         for row in self.page.ask(self.operator, "journal.json") or []:
             if row["request"] == request and row["done"] + row["refused"] > 0:
                 return row["done"] == 1
@@ -57,7 +57,7 @@ class Commands:
         return {one["id"]: one["known_to"] for one in view.get("raised", []) if one["known"]}
 
     def resend(self, building):
-        """A database that lost what it had."""
+        """A database that lost its contents."""
         building.until_acknowledged()
         self.must(until(lambda: self.postgres.number("SELECT count(*) FROM event") >= 3), "events are in the database")
         self.postgres.ask("DELETE FROM event")
@@ -69,11 +69,11 @@ class Commands:
         refused = self.command(f"verb=raw&from_us={from_us}&to_us={to_us}", self.viewer)
         self.must(refused == 403, "a viewer may not fetch raw samples")
         self.must(self.obeyed(f"verb=raw&from_us={from_us}&to_us={to_us}"), "raw is obeyed")
-        self.must(until(lambda: [one["came"] == one["pieces"] > 0 for one in self.stretches()] == [True]), "all pieces come")
+        self.must(until(lambda: [one["came"] == one["pieces"] > 0 for one in self.stretches()] == [True]), "all pieces arrive")
         self.must(self.obeyed(f"verb=raw&from_us={lcm_event.FIRST_US}&to_us={lcm_event.FIRST_US + SECOND_US}"),
                   "raw of a time without samples is obeyed")
         self.must(until(lambda: sum("found none" in one["problem"] for one in self.stretches()) == 1),
-                  "and the page says that there are none")
+                  "the page says that there are no samples")
         archive, own = f"{self.hub.folder}/sds", f"{self.hub.folder}/own.mseed"
         self.hub_command("fleet", "export", "--sds", archive, "--database", self.postgres.where)
         files = sorted(f"{folder}/{name}" for folder, _, names in os.walk(archive) for name in names)
@@ -86,7 +86,7 @@ class Commands:
         return (self.page.ask(self.operator, "building.json?name=d1") or {}).get("stretches", [])
 
     def samples(self, files):
-        """Of each channel its values."""
+        """The values of each channel."""
         out = f"{self.hub.folder}/samples.csv"
         self.hub_command("convert", *files, "--unit", "1e-6", out)
         with open(out) as file:
@@ -94,24 +94,24 @@ class Commands:
         return sorted(zip(*rows))
 
     def acknowledge(self, building):
-        """Sensors that fall silent are raised; one is acknowledged here, one there."""
+        """Silent sensors raise events. One is acknowledged here, one in the building."""
         def silent():
             view = self.page.ask(self.operator, "building.json?name=d1") or {}
             return [one["id"] for one in view.get("raised", []) if one["kind"] == "channel_silent"]
 
-        self.must(until(lambda: len(silent()) >= 2), "sensors that fall silent are raised at the hub")
+        self.must(until(lambda: len(silent()) >= 2), "the hub raises silent sensors")
         if len(silent()) < 2:
             return
         first, second = silent()[:2]
         self.must(self.obeyed(f"verb=acknowledge&id={first}&comment=tomorrow"), "acknowledge is obeyed")
-        self.must(until(lambda: self.known().get(first) == "alice"), "the page says who acknowledged")
+        self.must(until(lambda: self.known().get(first) == "alice"), "the page names who acknowledged")
         self.hub_command("acknowledge", str(second), building.config)
-        self.must(until(lambda: second in self.known()), "and it knows what was acknowledged in the building")
+        self.must(until(lambda: second in self.known()), "the page shows the acknowledgement given in the building")
 
     def look(self):
-        """At every view, in a browser."""
+        """Opens every view in a browser."""
         if not chromium.program():
-            print("  not looked at: no chromium (deploy/install-deps --with page)")
+            print("  views skipped: no chromium (deploy/install-deps --with page)")
             return
         browser = chromium.Chromium()
         try:
@@ -119,7 +119,7 @@ class Commands:
             for view, sign in VIEWS.items():
                 tab.value(f"location.hash = '{view}'")
                 seen = tab.until(f"document.getElementById('trouble').hidden && {sign}", WAIT_S)
-                self.must(seen, f"the page has its view {view}")
+                self.must(seen, f"the page shows its view {view}")
             self.must(not browser.errors, f"no script fails {' '.join(browser.errors)}")
         finally:
             browser.end()
@@ -138,14 +138,14 @@ class Commands:
         building.start_samples(silent=SILENT, silent_from_s=SILENT_FROM_S)
         moves_us = int(time.time() * SECOND_US)
         building.add_events(3)
-        self.must(until(lambda: self.command("verb=ping", self.viewer) == 403), "a viewer gives no command")
-        self.must(until(lambda: self.obeyed("verb=ping")), "an operator does, and the building answers")
+        self.must(until(lambda: self.command("verb=ping", self.viewer) == 403), "a viewer may not give a command")
+        self.must(until(lambda: self.obeyed("verb=ping")), "an operator may, and the building answers")
         self.resend(building)
         time.sleep(max(0, 25 - (time.time() - moves_us / SECOND_US)))
         self.raw(building, moves_us + 20 * SECOND_US)
         self.acknowledge(building)
         journal = json.dumps(self.page.ask(self.operator, "journal.json"))
-        self.must(all(f'"{verb}"' in journal for verb in ("ping", "resend", "raw", "acknowledge")), "the journal has them all")
+        self.must(all(f'"{verb}"' in journal for verb in ("ping", "resend", "raw", "acknowledge")), "the journal has all commands")
         self.look()
         self.page.stop()
         building.samples.end()

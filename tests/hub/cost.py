@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a hub of a thousand buildings costs, how fast it takes what an hour without it left, and what an uplink costs."""
+"""Measures a hub of a thousand buildings, its speed after an hour's outage, and the cost of an uplink."""
 import base64
 import json
 import os
@@ -15,14 +15,14 @@ from nats_client import Client
 
 PARAMETERS, CHANNELS, EVENTS = 120, 20, 5
 PERIODS_S = (60, 600, 3600)
-# To be reached (docs/fleet.md).
+# Requirements (docs/fleet.md).
 CATCH_UP_S, SERVER_CORES, SERVER_BYTES = 60, 0.3, 300e6
 UPLINK_CORE, UPLINK_BYTES, UPLINK_DAY_BYTES = 0.01, 30e6, 5e6
 SUMMARIES_CORE_S = 1000
 
 
 def fill_history(path, hours):
-    """Summaries of the last hours of a building with 120 parameters, and some events, in tables that run made."""
+    """Writes summaries of the last hours of a building with 120 parameters, and some events, into the tables of `run`."""
     database = sqlite3.connect(path, isolation_level=None)
     database.execute("BEGIN")
     now_us = int(time.time()) // 3600 * 3600 * 10**6
@@ -34,7 +34,7 @@ def fill_history(path, hours):
     for period_s in PERIODS_S:
         for start_us in range(now_us - hours * 3600 * 10**6, now_us, period_s * 10**6):
             add_period(database, period_s, start_us)
-    add_period(database, PERIODS_S[0], now_us)  # what is before it is closed
+    add_period(database, PERIODS_S[0], now_us)  # periods before this time are closed
     for i in range(EVENTS):
         database.execute("INSERT INTO event VALUES (?,?,?,?,?,?,?,?,?,?,?,?)",
                          ("gap", i, now_us - i * 10**6, 1, 0, 0, "", 1.0, 0.1, "", "message " * 20, ""))
@@ -49,7 +49,7 @@ def add_period(database, period_s, start_us):
     seed = start_us // 10**6
     rows = []
     for p in range(PARAMETERS):
-        # No two are alike, as measured ones: what zstd makes of them counts.
+        # All values differ, like measured ones, because compression by zstd counts.
         value = 1e8 * (1 + p) * (1 + 1e-3 * ((seed * 7919 + p * 104729) % 1_000_003) / 1_000_003)
         step = 1e-4 * value * (1 + ((seed + p * 31) % 97) / 97)
         rows.append((1000 + p, period_s, start_us, 90 * period_s + p, value, step / 3, value - 4 * step, value - 3 * step,
@@ -65,7 +65,7 @@ class Cost:
     def __init__(self, hub, postgres, workers, load, count):
         self.hub, self.postgres, self.workers, self.problems = hub, postgres, workers, []
         self.load, self.count, self.rows_to_come = load, count, 0
-        # Each building has a disk of its own: here they would all wait for one.
+        # Each building has a disk; here all would share one.
         self.histories = f"/dev/shm/framewatch-load-{os.getpid()}"
 
     def bound(self, what, value, most, unit):
@@ -75,11 +75,11 @@ class Cost:
             self.problems.append(f"{what}: {value:.3g} {unit}, not {most:g}")
 
     def enroll(self):
-        """As `fleet request` and `fleet enroll` do, whose openssl calls these are; but users.conf is written once."""
+        """Does what `fleet request` and `fleet enroll` do with openssl, but writes users.conf once."""
         folder = self.hub.certificates
         begin = time.monotonic()
         self.hub.enroll("b0")
-        print(f"  one building enrolled in {time.monotonic() - begin:.2f} s, servers told")
+        print(f"  one building enrolled in {time.monotonic() - begin:.2f} s, servers reloaded")
         with open(f"{folder}/more.ext", "w") as file:
             file.write("basicConstraints=critical,CA:FALSE\nkeyUsage=critical,digitalSignature\n"
                        "extendedKeyUsage=clientAuth\n")
@@ -118,7 +118,7 @@ class Cost:
                        env=environment)
 
     def report(self):
-        """Newest: connected, waiting, under way, acknowledged, bytes, seconds of processor."""
+        """The newest line: connected, waiting, under way, acknowledged, bytes, seconds of processor."""
         try:
             with open(self.reports) as file:
                 lines = [line.split() for line in file if len(line.split()) == 6]
@@ -127,7 +127,7 @@ class Cost:
             return [0, 0, 0, 0, 0, 0]
 
     def catch_up(self):
-        """All wait for a hub that was away for an hour; then it comes back."""
+        """All buildings wait for a hub that is away for an hour and returns."""
         wanted = self.count * (EVENTS + 7)
         self.hub.kill()
         load = self.start_load()
@@ -160,7 +160,7 @@ class Cost:
         return load
 
     def steady(self, load, seconds):
-        """Heartbeats, and each building's summary every ten minutes."""
+        """Sends heartbeats, and each building's summary every ten minutes."""
         time.sleep(30)
         before = [server.usage()[0] for server in self.hub.servers]
         load_before, report_before = load.usage()[0], self.report()
@@ -196,7 +196,7 @@ class Cost:
               f"{self.count} uplinks in one process {(load.usage()[0] - load_before) / took:.3f}")
 
     def uplink(self, seconds):
-        """A real one, beside a real run, over an hour's history and then at rest."""
+        """A real uplink beside a real run, over an hour's history and then at rest."""
         self.hub.enroll("real")
         one = Building(self.hub, "real")
         one.start_run()
@@ -206,7 +206,7 @@ class Cost:
         cpu_s, size = one.uplink.usage()
         time.sleep(seconds)
         then_s, size = one.uplink.usage()
-        # Its summaries are closed every 4 s and 8 s, not every 10 min and hour.
+        # Its summaries close every 4 s and 8 s instead of every 10 min and hour.
         self.bound("processor of an uplink, summaries every 4 s", (then_s - cpu_s) / seconds, UPLINK_CORE, "cores")
         self.bound("its memory", size / 1e6, UPLINK_BYTES / 1e6, "MB")
         one.samples.end()
@@ -214,7 +214,7 @@ class Cost:
         one.stop()
 
     def day(self):
-        """Bytes of a message of each kind, as the streams hold it, times how often a day has one."""
+        """Bytes of a message of each kind in the streams, times their number per day."""
         operator = Client(self.hub.client[0], self.hub.certificates, "operator", 30)
         total = 0
         for stream, kind, times in (("FW_LAST", "service", 1440), ("FW_LAST", "status", 144), ("FW_LAST", "history", 144),
@@ -230,7 +230,7 @@ class Cost:
         self.bound("a day of an uplink, 120 parameters, 20 channels", total / 1e6, UPLINK_DAY_BYTES / 1e6, "MB")
 
     def worker_rate(self):
-        """Everything in FW_SUMMARY again, by one worker, into an empty table."""
+        """One worker reads everything in FW_SUMMARY again, into an empty table."""
         self.workers.stop()
         operator = Client(self.hub.client[0], self.hub.certificates, "operator", 30)
         held = json.loads(operator.request("$JS.API.STREAM.INFO.FW_SUMMARY", timeout_s=30))["state"]["messages"]

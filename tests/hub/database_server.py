@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A PostgreSQL of this test's own, on a Unix socket."""
+"""A PostgreSQL for this test, on a Unix socket."""
 import glob
 import os
 import pwd
@@ -16,9 +16,10 @@ def is_there():
 class Postgres:
     def __init__(self):
         self.bin = sorted(glob.glob("/usr/lib/postgresql/*/bin"))[-1]
-        self.folder = f"/tmp/framewatch-pg-{os.getpid()}"  # a socket's name is short
+        self.folder = f"/tmp/framewatch-pg-{os.getpid()}"  # names of sockets must be short
         os.makedirs(self.folder)
-        # It refuses to be root's; in a private network even root is nobody else, but may take another's number.
+        # PostgreSQL refuses to run as root. In a private network only root exists, but it may take another user
+        # number.
         self.as_user = []
         if os.getuid() == 0:
             user = pwd.getpwnam("postgres")
@@ -35,18 +36,18 @@ class Postgres:
             raise RuntimeError(f"{program}: {done.stdout[-500:]}")
 
     def start(self):
-        # pg_ctl's child inherits a pipe: the log is its own file.
+        # pg_ctl's child inherits a pipe, so the log is a separate file.
         subprocess.run([*self.as_user, f"{self.bin}/pg_ctl", "-D", f"{self.folder}/data", "-o",
                         f"-k {self.folder} -c listen_addresses=''", "-l", f"{self.folder}/log", "-w", "start"],
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd="/", check=True)
 
     def kill(self):
-        """Without a word: what is committed is on the disk."""
+        """Kills the server without warning: committed data are on the disk."""
         subprocess.run([*self.as_user, f"{self.bin}/pg_ctl", "-D", f"{self.folder}/data", "-m", "immediate", "stop"],
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd="/", check=False)
 
     def processor_s(self):
-        """Of all its processes, the ended ones too."""
+        """The memory of all its processes, including ended ones."""
         with open(f"{self.folder}/data/postmaster.pid") as file:
             first = int(file.readline())
         ticks = 0
@@ -65,7 +66,7 @@ class Postgres:
         return ticks / os.sysconf("SC_CLK_TCK")
 
     def ask(self, sql):
-        """Rows as psql prints them; empty when the database is away."""
+        """Rows as psql prints them; empty while the database is away."""
         done = subprocess.run([f"{self.bin}/psql", "-h", self.folder, "-U", "fleet", "-At", "-c", sql, "fleet"],
                               capture_output=True, text=True, check=False)
         return done.stdout.strip()
@@ -82,7 +83,7 @@ class Postgres:
 
 
 class Session:
-    """One connection, for questions that are asked often; it is opened anew when it is gone."""
+    """One connection for frequent queries. It reconnects by itself."""
 
     def __init__(self, postgres):
         self.postgres, self.psql = postgres, None

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""demo.py PROGRAM [--seconds S] [--speed N] [--port N] [--keep DIR]: a hub of three servers, PostgreSQL, six virtual
-buildings with a real `run` and `uplink` each, one earthquake, one building that loses 15 % of a frame; the overview in the
-browser. Ends by itself with a table of what happened. Exit status: 0 all of it is seen, 1 not, 2 something is missing."""
+"""demo.py PROGRAM [--seconds S] [--speed N] [--port N] [--keep DIR]: runs a hub of three servers, PostgreSQL
+and six virtual buildings with a real `run` and `uplink` each. In one earthquake, one building loses 15 % of a frame. The
+overview is in the browser. Ends by itself with a table of results. Exit status: 0 the hub finds the loss and no other,
+1 it does not, 2 something is not installed."""
 import argparse
 import asyncio
 import math
@@ -25,7 +26,7 @@ from hub import Hub, Process, free_ports  # noqa: E402
 from page import Page  # noqa: E402
 from proxy import join  # noqa: E402
 
-BUILDINGS = [("kobe-01", "Harbour tower", "Kobe", 34.682, 135.187), ("kobe-02", "City hall", "Kobe", 34.690, 135.195),
+BUILDINGS = [("kobe-01", "Harbor tower", "Kobe", 34.682, 135.187), ("kobe-02", "City hall", "Kobe", 34.690, 135.195),
              ("kobe-03", "Hospital", "Kobe", 34.701, 135.212), ("osaka-01", "Station block", "Osaka", 34.702, 135.495),
              ("osaka-02", "School", "Osaka", 34.674, 135.501), ("kyoto-01", "Library", "Kyoto", 35.003, 135.768)]
 DAMAGED, PARAMETER, FACTOR = "kobe-03", "kx_1_y2", 0.85
@@ -44,7 +45,7 @@ def missing():
 
 
 def ground(path, seconds, seed):
-    """Weak motion throughout, strong for some seconds: noise through the soil's resonance at 4 Hz."""
+    """Weak motion all the time, strong for some seconds: noise through the soil's resonance at 4 Hz."""
     chance = random.Random(seed)
     w, zeta, dt = 2 * math.pi * 4, 0.6, 1 / RATE
     speed = shift = 0.0
@@ -97,14 +98,14 @@ def say(text=""):
 
 
 def inside(a, postgres):
-    """In a network of its own: everything but the browser."""
+    """Runs everything except the browser in a network namespace."""
     folder, program = a.inside, os.path.abspath(a.program)
     say("a hub of three servers, PostgreSQL, a worker, the page ...")
     hub = Hub(ROOT, program, folder)
     hub.start()
     hub.wait()
     urls = [argument for url in hub.urls() for argument in ("--hub", url)]
-    for left in (4, 3, 2, 1, 0):  # a busy machine's servers may take longer than it waits
+    for left in (4, 3, 2, 1, 0):  # servers of a busy machine may need longer than the time limit
         if hub.fleet("setup", *urls, "--buildings", "10", good=(0, 2) if left else (0,)).returncode == 0:
             break
     more = [*urls, "--dir", hub.certificates, "--database", postgres.where]
@@ -132,7 +133,7 @@ def inside(a, postgres):
     begin, host_us = time.monotonic(), time.time() * 1e6
     say(f"\n  Open http://127.0.0.1:{a.port}/?token={token}\n")
     say(f"The ground moves weakly. After {QUAKE_S / a.speed:.0f} s there is an earthquake, and the hospital in Kobe loses 15 % of "
-        f"one frame\n({PARAMETER}); nobody has told the hub. Time runs {a.speed:g} times as fast as a clock.")
+        f"one frame\n({PARAMETER}); the hub is not told. Time runs {a.speed:g} times as fast as a clock.")
     return watch(a, lambda *words: page.ask(token, *words), begin, host_us)
 
 
@@ -153,12 +154,12 @@ def watch(a, ask, begin, host_us):
             quakes = ask("earthquakes.json?days=2") or []
             if quakes:
                 quake_us = quakes[0]["time_us"]
-                say(f"{now / a.speed:4.0f} s  {quakes[0]['buildings']} buildings shook together; all are asked for their minutes")
+                say(f"{now / a.speed:4.0f} s  {quakes[0]['buildings']} buildings shook together; the hub requests minutes from all")
                 ask(f"command?building=all&verb=minutes&from_us={quake_us - 600_000_000}&to_us="
                          f"{quake_us + 3_600_000_000}", "POST")
                 asked = True
     if not asked:
-        say("no earthquake was found by the hub: the time of the scenario is taken")
+        say("the hub found no earthquake; using the time of the scenario")
         quake_us = int(host_us + QUAKE_S * 1e6)
     return table(ask, quake_us, seen)
 
@@ -173,25 +174,25 @@ def table(ask, quake_us, seen):
     if not result or "buildings" not in result:
         say("the page does not answer")
         return 1
-    say(f"\n{'building':10} {'in truth':18} {'largest loss that is seen':34} {'compared':>8}  overview")
+    say(f"\n{'building':10} {'true loss':18} {'largest loss found':34} {'compared':>8}  overview")
     for one in result["buildings"]:
         worst = one.get("worst")
-        loss = "nothing of the time is known"
+        loss = "no estimates from that time"
         if one["result"] == "loss":
             loss = f"{worst['parameter']} {100 * worst['ratio']:+.1f} % +- {100 * worst['std_error']:.2f} %"
         elif one["result"] == "none":
-            loss = "none that is significant"
+            loss = "no significant loss"
         elif one["result"] == "not_observable":
             loss = "not observable"
-        truth = f"{PARAMETER} {100 * (FACTOR - 1):+.0f} %" if one["name"] == DAMAGED else "whole"
+        truth = f"{PARAMETER} {100 * (FACTOR - 1):+.0f} %" if one["name"] == DAMAGED else "none"
         say(f"{one['name']:10} {truth:18} {loss:34} {one['compared']:8}  {seen.get(one['name'], (0, 'well'))[1]}")
     if journal:
-        say(f"command minutes to {journal[-1]['buildings']} buildings: {journal[-1]['done']} obeyed")
+        say(f"command minutes to {journal[-1]['buildings']} buildings: {journal[-1]['done']} carried out")
     first = result["buildings"][0]
     good = (first["name"] == DAMAGED and first["result"] == "loss" and first["worst"]["parameter"] == PARAMETER and
             all(one["result"] == "none" for one in result["buildings"][1:]))
-    say("the damaged building stands first, and no other is said to be damaged" if good else
-        "NOT what it should be: the damaged building first, and no other")
+    say("Result: the damaged building is first, and no other shows damage." if good else
+        "WRONG RESULT: the damaged building should be first, and no other should show damage.")
     return 0 if good else 1
 
 
@@ -206,7 +207,7 @@ def keep(folder, target):
 
 
 def outside(a):
-    """The page's port, for a browser that is outside of the buildings' network."""
+    """Forwards the page's port to a browser outside of the buildings' network."""
     folder = tempfile.mkdtemp(prefix="fw-demo-")
     child = subprocess.Popen([f"{HERE}/../support/private-network", sys.executable, os.path.abspath(__file__), a.program,
                               "--inside", folder, "--port", str(a.port), "--seconds", str(a.seconds), "--speed",
@@ -241,17 +242,17 @@ def outside(a):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program")
-    parser.add_argument("--seconds", type=int, default=520, help="of sensor time")
+    parser.add_argument("--seconds", type=int, default=520, help="duration in sensor time")
     parser.add_argument("--speed", type=float, default=3, help="sensor time over clock time")
-    parser.add_argument("--port", type=int, default=8090, help="of the page")
+    parser.add_argument("--port", type=int, default=8090, help="port of the page")
     parser.add_argument("--keep", help="folder for logs and configurations")
     parser.add_argument("--inside", help=argparse.SUPPRESS)
     a = parser.parse_args()
     if why := missing():
-        print(f"demo --fleet: {why}: deploy/install-deps --with fleet installs what it takes", file=sys.stderr)
+        print(f"demo --fleet: {why}: install it with deploy/install-deps --with fleet", file=sys.stderr)
         return 2
     if not os.path.exists(f"{os.path.dirname(os.path.abspath(a.program))}/framewatch-fleet"):
-        print("demo --fleet: framewatch-fleet is not built: deploy/install-deps --with fleet, then again", file=sys.stderr)
+        print("demo --fleet: framewatch-fleet is not built: run deploy/install-deps --with fleet and build again", file=sys.stderr)
         return 2
     if not a.inside:
         return outside(a)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Faults of hub, line, centre and building, one after the other, while three real buildings go on; afterwards everything
-must be in the database, once."""
+"""Faults of hub, line, center and building, one after the other, while three real buildings run. At the end the database
+must hold every message exactly once."""
 import json
 import os
 import signal
@@ -16,7 +16,7 @@ BEFORE_S, EVERY_S, EACH = 2, 0.25, 4
 BUILDINGS = 3
 CONSUMERS = (("FW_EVENT", "store"), ("FW_SUMMARY", "store"))
 P99_S, SERVER_DIES_S = 2, 20  # from an event to the database
-MOST_LOAD = 3  # a processor: with more, times say nothing of the programs
+MOST_LOAD = 3  # processes per processor; with more, times say nothing about the programs
 
 
 class Faults:
@@ -25,7 +25,7 @@ class Faults:
         self.rows, self.sent, self.busy = [], {}, False
         listen = free_ports(3)
         pairs = [f"{a}:{b}" for a, b in zip(listen, hub.client)]
-        # Building 3 has a line that can be dead.
+        # Building 3 has a line that can fail silently.
         self.proxy = Process([sys.executable, f"{os.path.dirname(__file__)}/proxy.py", *pairs], f"{hub.folder}/proxy.log")
         time.sleep(0.5)
         self.buildings = [self.building(f"b{11 + i}", listen if i == 2 else None) for i in range(BUILDINGS)]
@@ -52,7 +52,7 @@ class Faults:
             time.sleep(EVERY_S)
 
     def fault(self, what, act, times=1):
-        """act() does the harm and mends it; then all must be acknowledged."""
+        """act() causes the fault and repairs it. Then everything must be acknowledged."""
         first = {one.name: one.events for one in self.buildings}
         self.feed(BEFORE_S)
         for i in range(times):
@@ -65,7 +65,7 @@ class Faults:
         seconds = max(one.until_acknowledged(300) for one in self.buildings)
         last = {one.name: one.events for one in self.buildings}
         self.rows.append((what, first, last, seconds))
-        print(f"{chr(13) if sys.stdout.isatty() else ''}  {what}: all acknowledged {seconds:.1f} s after the last", flush=True)
+        print(f"{chr(13) if sys.stdout.isatty() else ''}  {what}: all acknowledged {seconds:.1f} s after the last fault", flush=True)
 
     def info(self, what):
         for _ in range(120):
@@ -74,7 +74,7 @@ class Faults:
                 answer = json.loads(client.request(f"$JS.API.{what}", timeout_s=10) or b"{}")
                 if "cluster" in answer and "leader" in answer["cluster"]:
                     return answer
-            except Exception:  # noqa: BLE001: a server that is just gone
+            except Exception:  # noqa: BLE001: the server has just ended
                 pass
             time.sleep(0.5)
         raise RuntimeError(f"{what}: no leader")
@@ -168,7 +168,7 @@ class Faults:
         self.fault(f"{power_cuts} random power cuts", self.any_power_cut, power_cuts)
 
     def until_quiet(self, timeout_s=180):
-        """Until buildings wait for nothing and workers have taken everything."""
+        """Waits until no building has waiting messages and workers have stored everything."""
         for one in self.buildings:
             one.samples.end()
             one.stop_run()
@@ -179,10 +179,10 @@ class Faults:
             if all(info["num_pending"] == 0 and info["num_ack_pending"] == 0 for info in infos):
                 return []
             time.sleep(1)
-        return [f"the workers' consumers do not come to rest: {infos}"]
+        return [f"the workers' consumers stay busy: {infos}"]
 
     def stored(self):
-        """Keys in the database, as often as they are there."""
+        """Number of occurrences of each key in the database."""
         events = self.postgres.ask("SELECT name || '/event/' || kind || '/' || event.id || '/' || time_us || '/' || state "
                                    "FROM event JOIN building ON building.id = event.building").split("\n")
         periods = self.postgres.ask("SELECT name || '/summary/' || period_s || '/' || start_us "
@@ -190,7 +190,7 @@ class Faults:
         return events, periods
 
     def judge(self):
-        """Prints the table; problems in words."""
+        """Prints the table and describes problems."""
         problems = self.until_quiet()
         self.arrivals.end()
         client = Client(self.hub.client[0], self.hub.certificates, "operator", 30)

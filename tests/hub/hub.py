@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Three nats-servers of this test's own, as deploy/fleet/ describes them, and workers at them."""
+"""Three nats-servers for this test, configured as in deploy/fleet/, and workers."""
 import os
 import re
 import shutil
@@ -21,7 +21,7 @@ def free_ports(count):
 
 
 class Process:
-    """A process that this test began, and ends."""
+    """A process that this test starts and ends."""
 
     every = []
 
@@ -47,7 +47,7 @@ class Process:
         return self.child.returncode
 
     def usage(self):
-        """Seconds of processor so far, and bytes resident."""
+        """Seconds of processor so far, and resident bytes."""
         with open(f"/proc/{self.child.pid}/stat") as file:
             words = file.read().rsplit(")", 1)[1].split()
         ticks, pages = int(words[11]) + int(words[12]), int(words[21])
@@ -107,8 +107,8 @@ class Hub:
             self.servers[i].end(signal.SIGKILL)
 
     def wait(self, timeout_s=90, patience_s=15):
-        """Until every server is well. Debian's 2.9.10 at times says for ever of a consumer that nobody uses that it is
-        not current; after some seconds it is enough that JetStream runs."""
+        """Waits until every server is healthy. Debian's 2.9.10 sometimes reports an unused consumer as not current forever, so
+        after some seconds a running JetStream suffices."""
         begin = time.monotonic()
         for i in range(3):
             while True:
@@ -133,7 +133,7 @@ class Hub:
         self.fleet("enroll", name, request, "--out", f"{self.certificates}/{name}.pem", *running)
 
     def copy_stores(self):
-        """As a disk is some seconds before its power fails."""
+        """Restores the disk of some seconds before, as after a power failure."""
         for i in (1, 2, 3):
             shutil.rmtree(f"{self.folder}/old{i}", ignore_errors=True)
             subprocess.run(["cp", "-r", f"{self.folder}/store{i}", f"{self.folder}/old{i}"], check=False,

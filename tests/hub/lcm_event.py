@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""An event_t as LCM encodes it, and LCM's datagram of it."""
+"""An event_t encoded for LCM, and its datagram."""
 import socket
 import struct
 
 MAGIC, GROUP = 0x4C433032, "239.255.76.67"
-FIRST_US = 1_700_000_000_000_000  # of events that have no other time
+FIRST_US = 1_700_000_000_000_000  # default time of events
 
 
 def fingerprint(root, channel="FRAMEWATCH_EVENT"):
-    """Of the type on a channel: the first bytes of one in the log of every type."""
+    """Fingerprint of the type of a channel: the first bytes of its message in the log of every type."""
     with open(f"{root}/tests/golden/every_type.lcmlog", "rb") as file:
         log = file.read()
     at = log.index(channel.encode()) + len(channel)
@@ -20,8 +20,8 @@ def text(value):
 
 
 def encoded(print_, row):
-    """row: kind, id, time_us, state, since_us, severity, place, value, std_error, unit, message, segment: as the
-    history's table has them."""
+    """row: kind, id, time_us, state, since_us, severity, place, value, std_error, unit, message, segment, as in the
+    history's table."""
     kind, number, time_us, state, since_us, severity, place, value, error, unit, message, segment = row
     return (print_ + struct.pack(">qqqii", time_us, since_us, number, state, severity) + text(kind) + text(place) +
             struct.pack(">dd", value, error) + text(unit) + text(message) + text(segment))

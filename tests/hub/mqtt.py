@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Building automation hears of the hub's buildings over MQTT, from the real nats-server, and can say nothing."""
+"""Building automation receives the state of the hub's buildings over MQTT from the real nats-server, and can send nothing."""
 import json
 import subprocess
 import time
@@ -11,7 +11,7 @@ USER, PASSWORD = "bms", "a-password-of-this-test"
 
 
 def newest_of(root, channel):
-    """A message of the log of every type."""
+    """A message from the log of every type."""
     with open(f"{root}/tests/golden/every_type.lcmlog", "rb") as file:
         log = file.read()
     at = 0
@@ -24,7 +24,7 @@ def newest_of(root, channel):
 
 
 def configure(hub):
-    """The files of deploy/fleet, for the first server, before it begins, and one user; the port."""
+    """Prepares the files of deploy/fleet for the first server, and one user. Returns the port."""
     (port,) = free_ports(1)
     with open(f"{hub.root}/deploy/fleet/mqtt.conf") as file:
         text = file.read().replace("0.0.0.0:8883", f"127.0.0.1:{port}").replace("/etc/framewatch-hub/", f"{hub.certificates}/")
@@ -46,10 +46,10 @@ def mosquitto(hub, port, program, topic, *more, password=PASSWORD):
 
 
 def check(hub, port, postgres):
-    """A worker is at work. Problems, in words."""
+    """Needs a running worker. Returns a list of problems."""
     problems = []
     hub.enroll("kobe")
-    for _ in range(15):  # an account's JetStream may begin after the server
+    for _ in range(15):  # JetStream of an account may start after the server
         listener = subprocess.Popen(["mosquitto_sub", "-h", "localhost", "-p", str(port), "--cafile",
                                      f"{hub.certificates}/ca.pem", "-u", USER, "-P", PASSWORD, "-q", "1", "-v", "-t",
                                      "framewatch/#", "-W", "30"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -69,14 +69,14 @@ def check(hub, port, postgres):
         topic, text = line.split(" ", 1)
         times[topic] = times.get(topic, 0) + 1
         topics[topic] = json.loads(text)
-    print(f"  heard over MQTT, times: {times or 'nothing'} {trouble.strip()}")
+    print(f"  received over MQTT, number of messages: {times or 'nothing'} {trouble.strip()}")
     if topics.get("framewatch/kobe/state", {}).get("schema") != "framewatch.state/1":
         problems.append(f"no state of the building came over MQTT: {heard}{trouble}")
     if topics.get("framewatch/kobe/event", {}).get("schema") != "framewatch.event/1":
         problems.append("no event came over MQTT")
     if mosquitto(hub, port, "mosquitto_sub", "framewatch/#", "-C", "1", "-W", "3", password="wrong").returncode in (0, 27):
-        problems.append("a wrong password is let in")
-    # What is not allowed is dropped, or ends the connection: nobody may hear of it.
+        problems.append("a wrong password is accepted")
+    # A forbidden message is dropped or ends the connection: nobody may receive it.
     spy = subprocess.Popen(["mosquitto_sub", "-h", "localhost", "-p", str(port), "--cafile", f"{hub.certificates}/ca.pem", "-u",
                             USER, "-P", PASSWORD, "-t", "framewatch/kobe/forged", "-C", "1", "-W", "5"],
                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -85,19 +85,19 @@ def check(hub, port, postgres):
     mosquitto(hub, port, "mosquitto_pub", "fw/up/kobe/event", "-m", "it burns")
     forged, _ = spy.communicate(timeout=60)
     if "burns" in forged:
-        problems.append("building automation can say what others hear")
+        problems.append("building automation can send to other clients")
     foreign = mosquitto(hub, port, "mosquitto_sub", "fw/#", "-C", "1", "-W", "4")
     if foreign.stdout:
-        problems.append("building automation hears what buildings send to the hub")
+        problems.append("building automation receives messages of buildings to the hub")
     refused = postgres.ask("SELECT count(*) FROM refused")
-    print(f"  said over MQTT: nothing came anywhere ({refused} messages refused by the worker)")
+    print(f"  messages sent over MQTT reached nobody ({refused} messages refused by the worker)")
     if refused != "0":
-        problems.append("what was said over MQTT reached the worker")
+        problems.append("a message sent over MQTT reached the worker")
     return problems
 
 
 def event_key(event):
-    """Of the log's event_t: time_us, since_us, id, state, severity, kind."""
+    """Fields of an event_t: time_us, since_us, id, state, severity, kind."""
     time_us, _, number = (int.from_bytes(event[8 + 8 * i:16 + 8 * i], "big", signed=True) for i in range(3))
     state = int.from_bytes(event[32:36], "big", signed=True)
     size = int.from_bytes(event[40:44], "big")

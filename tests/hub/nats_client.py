@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A client of NATS with no more than the tests need: TLS, publish, subscribe, request, and what a server denies."""
+"""A minimal NATS client for tests: TLS, publish, subscribe, request, and denials by the server."""
 import json
 import re
 import socket
@@ -21,7 +21,7 @@ class Client:
         plain = socket.create_connection(("127.0.0.1", port), timeout_s)
         plain.settimeout(timeout_s)
         while b"\r\n" not in self.buffer:
-            got = plain.recv(1)  # nothing of TLS may be read
+            got = plain.recv(1)  # bytes of TLS must not be read here
             if not got:
                 raise Denied("closed")
             self.buffer += got
@@ -40,7 +40,7 @@ class Client:
         self.socket.sendall(data)
 
     def until(self, done, timeout_s):
-        """Reads until `done()`; False when the time is over. Raises Denied when the server hangs up."""
+        """Reads until `done()`; returns False after the time limit. Raises Denied if the server closes the connection."""
         end = time.monotonic() + timeout_s
         while not done():
             left = end - time.monotonic()
@@ -99,7 +99,7 @@ class Client:
             self.send(f"PUB {subject} {reply} {len(data)}\r\n".encode() + data + b"\r\n")
 
     def request(self, subject, data=b"", headers=None, timeout_s=30):
-        """The answer's bytes; None when there is none."""
+        """The answer's bytes; None if there is none."""
         self.number += 1
         inbox = f"_INBOX_{self.name}.{self.number}"
         self.send(f"SUB {inbox} {self.number}\r\n".encode())
@@ -111,7 +111,7 @@ class Client:
 
 
 def stream_keys(client, stream):
-    """Keys of everything that a stream holds, in its order, without their seals."""
+    """Keys of all messages in a stream, in order, without their seals."""
     info = json.loads(client.request(f"$JS.API.STREAM.INFO.{stream}", timeout_s=30) or b"{}")
     state = info.get("state")
     if state is None:

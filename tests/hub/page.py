@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`framewatch fleet serve` of a test's own, and what it answers to a person."""
+"""`framewatch fleet serve` for a test, and its answers to a person."""
 import json
 import subprocess
 import urllib.error
@@ -18,7 +18,7 @@ class Page:
         self.process = None
 
     def person(self, name, role):
-        """Their token."""
+        """The person's token."""
         return subprocess.run([self.hub.program, "fleet", "person", name, "--role", role, "--people", self.people],
                               capture_output=True, text=True, check=True).stdout.strip()
 
@@ -29,7 +29,7 @@ class Page:
         self.process.end()
 
     def answer(self, token, path, method="GET"):
-        """Status, and the JSON; 0 and None where there is none."""
+        """Status and JSON; 0 and None without an answer."""
         request = urllib.request.Request(f"http://127.0.0.1:{self.port}/{path}", method=method,
                                          headers={"Authorization": f"Bearer {token}"})
         try:

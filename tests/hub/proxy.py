@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""proxy.py LISTEN:TARGET...: forwards TCP on this machine. Stopped (SIGSTOP) it is a line that is dead without a word."""
+"""proxy.py LISTEN:TARGET...: forwards TCP on this machine. Stopped with SIGSTOP, it is a line that fails silently."""
 import asyncio
 import sys
 
@@ -15,7 +15,7 @@ async def pump(reader, writer):
 
 
 async def join(reader, writer, connecting):
-    """A connection and the one that `connecting` opens, both ways."""
+    """Joins a connection and the one that `connecting` opens, in both directions."""
     try:
         there_reader, there_writer = await connecting
     except OSError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the certificate of a building may do at a real server, and what not."""
+"""Rights of a building's certificate at a real server."""
 import base64
 import json
 import subprocess
@@ -8,7 +8,7 @@ import time
 import lcm_event
 from nats_client import Client, Denied
 
-SOON_S = 15  # a request that nobody answers takes 30 s
+SOON_S = 15  # a request without an answer takes 30 s
 DENIED = "Permissions Violation"
 
 
@@ -20,7 +20,7 @@ def denied(client, act):
 
 
 def check(hub, one):
-    """Problems, in words. `one` is a building with its uplink running; b1 and b2 are enrolled."""
+    """Returns a list of problems. `one` is a building with a running uplink; b1 and b2 are enrolled."""
     problems = []
 
     def must(good, what):
@@ -33,7 +33,7 @@ def check(hub, one):
          "a building writes its own")
     for what, act in (
             ("writing another's event", lambda c: c.publish("fw.up.b2.event", b"x")),
-            ("writing what the page says", lambda c: c.publish("framewatch.b1", b"x")),
+            ("writing as the page", lambda c: c.publish("framewatch.b1", b"x")),
             ("commanding another", lambda c: c.publish("fw.down.b2.acknowledge", b"x")),
             ("commanding all", lambda c: c.publish("fw.down.all.minutes", b"x")),
             ("asking for a stream's content", lambda c: c.publish("$JS.API.STREAM.MSG.GET.FW_EVENT", b'{"seq":1}')),
@@ -53,9 +53,9 @@ def check(hub, one):
             ("purging a stream", lambda c: c.publish("$JS.API.STREAM.PURGE.FW_EVENT", b"")),
             ("the server's own subjects", lambda c: c.publish("$SYS.REQ.SERVER.PING", b""))):
         must(denied(thief, act), f"{what} is refused")
-    must(not steals_keys(hub, thief, one), "keys said before another building says them take nothing from it")
+    must(not steals_keys(hub, thief, one), "a stolen key does not suppress the other building's message")
     worker = Client(hub.client[0], hub.certificates, "worker")
-    must(denied(worker, lambda c: c.publish("fw.down.b1.raw", b"x")), "the worker commands nothing but resend")
+    must(denied(worker, lambda c: c.publish("fw.down.b1.raw", b"x")), "the worker may command only resend")
 
     page = Client(hub.client[1], hub.certificates, "page")
 
@@ -66,18 +66,18 @@ def check(hub, one):
     must(command(one.name, "ping", b"", "p1") == b'{"ok":true}', "the page's ping is answered")
     begin = time.monotonic()
     gone = command("b99", "ping", b"", "p2")
-    must(not gone and time.monotonic() - begin < SOON_S, "of a building that is away the page hears so at once")
+    must(not gone and time.monotonic() - begin < SOON_S, "the page learns at once that a building is away")
     stretch = json.dumps({"from_us": 0, "to_us": 1}).encode()
     must(command(one.name, "resend", stretch, "r1") == b'{"ok":true}', "the page's resend is obeyed")
-    must(b'"ok":false' in (command(one.name, "resend", stretch, "r2", -5) or b""), "a command that is late is refused")
-    must(b'"ok":false' in (command(one.name, "raw", stretch, "../x") or b""), "a request that is no name is refused")
-    must(b'"ok":false' in (command(one.name, "reboot", b"", "r4") or b""), "a verb that nobody knows is refused")
+    must(b'"ok":false' in (command(one.name, "resend", stretch, "r2", -5) or b""), "a late command is refused")
+    must(b'"ok":false' in (command(one.name, "raw", stretch, "../x") or b""), "a malformed request name is refused")
+    must(b'"ok":false' in (command(one.name, "reboot", b"", "r4") or b""), "an unknown command is refused")
     return problems
 
 
 def steals_keys(hub, thief, one):
-    """The hub takes a second message of one Nats-Msg-Id for a repetition, whoever sent the first: a thief that says the
-    key of the event to come would have it acknowledged, and thrown away."""
+    """The hub takes a second message with the same Nats-Msg-Id for a repetition, whoever sent the first. A thief that sends
+    the key of a future event could thus have that event acknowledged and dropped."""
     kind, number, time_us, state = lcm_event.event(one.events)[:4]
     key = one.event_key(kind, number, time_us, state)
     thief.publish(f"fw.up.{thief.name}.event", b"x", {"Nats-Msg-Id": key})
@@ -91,7 +91,7 @@ def steals_keys(hub, thief, one):
 
 
 def revoke(hub, one):
-    """Seconds until a revoked building is out, and problems."""
+    """Seconds until a revoked building is disconnected, and problems."""
     held = Client(hub.client[0], hub.certificates, one.name)
     begin = time.monotonic()
     hub.fleet("revoke", one.name, *hub.pid_files())
@@ -102,19 +102,19 @@ def revoke(hub, one):
         seconds = time.monotonic() - begin
     try:
         Client(hub.client[0], hub.certificates, one.name)
-        return seconds, ["a revoked building is let in"]
+        return seconds, ["a revoked building is accepted"]
     except (Denied, OSError):
         return seconds, []
 
 
 def strangers(hub):
-    """A certificate of another authority, and a client without any."""
+    """Tries a certificate of another authority, and a client without one."""
     other = f"{hub.folder}/other"
     subprocess.run(["mkdir", "-p", other], check=True)
     subprocess.run([hub.program, "fleet", "authority", "--dir", other], check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cp", f"{hub.certificates}/ca.pem", other], check=True)
     try:
         Client(hub.client[0], other, "operator")
-        return ["a certificate of another authority is let in"]
+        return ["a certificate of another authority is accepted"]
     except (Denied, OSError):
         return []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`framewatch run` gives the same bytes with a hub, without one, and beside an uplink that is killed again and again."""
+"""`framewatch run` gives the same bytes with a hub, without one, and beside an uplink that is repeatedly killed."""
 import os
 import shutil
 import signal
@@ -10,7 +10,7 @@ from building import Building, simulated_samples
 from hub import Process
 
 SECONDS, SPEED = 20, 1
-LEAST, TRIES = 500, 3  # estimates that two runs must both have; a machine that is too busy loses datagrams
+LEAST, TRIES = 500, 3  # estimates that two runs must share; a busy machine loses datagrams
 
 
 def estimates(path):
@@ -63,7 +63,7 @@ def check(hub):
             found = one_run(hub, name, True, kills)
             both = without.keys() & found.keys()
             same = sum(without[end] == found[end] for end in both)
-            print(f"  {what}: {same} of {len(both)} estimates are the same bytes")
+            print(f"  {what}: {same} of {len(both)} estimates have the same bytes")
             if len(both) < LEAST or same < len(both):
                 problems.append(f"{what}: {len(both) - same} of {len(both)} estimates differ")
         if not problems:

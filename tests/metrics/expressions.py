@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""expressions.py PROMETHEUS BOARD: asks a Prometheus every expression of the board and of the rules
-that it has loaded. Exit 1 when one is no PromQL, or has no series although a building shakes, or when an alert
-fires that should not."""
+"""expressions.py PROMETHEUS BOARD: queries a Prometheus for every expression of the board and of its
+loaded rules. Exits with 1 if one is not valid PromQL, if one has no series while a building shakes, or if a wrong alert
+fires."""
 import json
 import re
 import sys
@@ -11,16 +11,16 @@ import urllib.parse
 import urllib.request
 
 LONGEST_S = 90  # until everything has been seen
-# What needs a CAN bus that is there.
+# Expressions that need a working CAN bus.
 WITHOUT_CAN = {"framewatch_can_load_ratio"}
-# What needs a hub of many buildings (./test --fleet).
+# Expressions that need a hub of many buildings (./test --fleet).
 OF_A_HUB = "framewatch_uplink_"
-# What is wrong with the two buildings of tests/metrics/run: the second one has no sensors.
+# Alerts for the two buildings of tests/metrics/run: the second one has no sensors.
 EXPECTED_ALERTS = {"FramewatchCanBus", "FramewatchStiffnessChange", "FramewatchGap"}
 
 
 def series(prometheus, expression):
-    """Number of series; None when it is no PromQL."""
+    """Returns the number of series; None if it is not valid PromQL."""
     query = urllib.parse.urlencode({"query": expression})
     try:
         with urllib.request.urlopen(f"{prometheus}/api/v1/query?{query}") as answer:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// soak: a building's months in hours, and whether all is well then.
+// soak: runs months of a building in hours and checks limits.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -14,10 +14,10 @@ namespace {
 
 constexpr const char* kUsage = R"(usage: soak DIR [--days N] [--seed N] [--alarms-per-year N]
 
-Runs the demo building for N days (30) as fast as it goes: quiet, traffic, two earthquakes, failing
-sensors, steps of the clock, stiffness that follows the temperature; no damage. The history is
-written to DIR, which must not be there. Prints what there is to say every day, and at the end.
-exit: 0 all holds, 1 something does not, 2 usage
+Runs the demo building for N days (30) as fast as possible: quiet, traffic, two earthquakes, failing
+sensors, steps of the clock, stiffness that follows the temperature; no damage. Writes the history to
+DIR, which must not exist. Prints a line every day and the results at the end.
+exit: 0 all requirements hold, 1 one does not, 2 usage
 )";
 
 // Limits.
@@ -46,8 +46,8 @@ int judge(const SoakOptions& o, const SoakResult& r) {
        fmt::format("windows: {} of {}, {} breaks for {} steps of the clock", r.windows,
                    r.expected_windows, r.breaks, SoakNight::kClockSteps));
   line(r.sum_error <= kSumError && r.sums_compared > 0,
-       fmt::format("sums: {:.1e} from those of the last half minute alone, {} times", r.sum_error,
-                   r.sums_compared));
+       fmt::format("sums: differ by {:.1e} from those of only the last half minute, {} times",
+                   r.sum_error, r.sums_compared));
   line(r.history_trouble.empty() && r.raw_dropped == 0 && r.summary_dropped == 0 &&
            std::abs(r.summarised_windows - r.windows) <= 3 * SoakNight::kClockSteps &&
            r.hourly_windows == r.summarised_windows,
@@ -59,7 +59,7 @@ int judge(const SoakOptions& o, const SoakResult& r) {
        fmt::format("false alarms: {}, allowed {:.1f} (twice the {:g} per year)", r.alarms, allowed,
                    o.alarms_per_year));
   fmt::print("long windows: {}, with values {}\n", r.long_windows, r.long_values);
-  for (const std::string& told : r.told) fmt::print("told: {}\n", told);
+  for (const std::string& told : r.told) fmt::print("event: {}\n", told);
   return failed == 0 ? 0 : 1;
 }
 
@@ -84,7 +84,7 @@ int main(int count, char** arguments) {
     return 2;
   }
   if (std::filesystem::exists(o.directory)) {
-    fmt::print(stderr, "soak: {} is there already\n", o.directory);
+    fmt::print(stderr, "soak: {} already exists\n", o.directory);
     return 2;
   }
   o.looked = [](double days, std::int64_t resident, int alarms) {

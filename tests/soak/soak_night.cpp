@@ -36,7 +36,7 @@ SoakNight::SoakNight(const estimator::PipelineConfig& config, std::int64_t insta
       random_(seed, 1),
       building_(config.structure, config.design, config.axes, seed),
       accel_(config.axes.size()) {
-  // The design is what a drawing would say: off by a tenth.
+  // The design differs from the building by a tenth, like one from drawings.
   for (Eigen::Index p = 0; p < truth_.size(); ++p) truth_[p] *= p % 2 == 0 ? 1.1 : 0.92;
   building_.set_noise(config.axes.front().noise_density);
 }

@@ -11,15 +11,16 @@
 
 namespace framewatch::soak {
 
-/// What its nodes send at one instant.
+/// The messages of all nodes at one instant.
 struct Instant {
   std::int64_t time_us;              ///< by the nodes' clock
   const std::vector<double>* accel;  ///< per axis, m/s^2; NaN: its node sends nothing
 };
 
-/// A building without damage, for as long as asked: quiet, busier by day, traffic, two earthquakes,
-/// stiffness that follows a daily temperature; a sensor that fails for a while, one that is stuck,
-/// one with spikes; three steps of the nodes' clock. What happens when is a share of the duration.
+/// An undamaged building for any duration: quiet, busier by day, with traffic, two earthquakes and
+/// stiffness that follows a daily temperature. One sensor fails for a while, one is stuck, one has
+/// spikes, and the nodes' clock steps three times. Times of these events are shares of the
+/// duration.
 class SoakNight {
  public:
   static constexpr double kSwing = 0.03;  ///< of stiffness in a day, trough to crest
@@ -28,7 +29,7 @@ class SoakNight {
   SoakNight(const estimator::PipelineConfig& config, std::int64_t instants, std::uint64_t seed);
 
   Instant next();
-  /// Of the instant next() gave last.
+  /// At the last instant that next() returned.
   double degc() const { return degc_; }
 
  private:
@@ -41,7 +42,7 @@ class SoakNight {
 
   std::int64_t instants_, at_ = -1, clock_us_ = 0, burst_ = 0;
   Eigen::VectorXd truth_;
-  int parameters_stiff_;  ///< theta's first half: stiffness
+  int parameters_stiff_;  ///< number of stiffnesses, the first half of theta
   estimator::Random random_;
   test::RestlessBuilding building_;
   double degc_ = 10;

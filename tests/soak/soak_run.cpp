@@ -49,8 +49,8 @@ constexpr double kSame = 1e-11;
 constexpr std::int64_t kKept = 3000;  // instants that a second pipeline sees
 constexpr double kCompared[] = {0.12, 0.32, 0.48, 0.75, 0.99};  // shares of the duration
 constexpr std::int64_t kTemperature = 100 * 120;
-// From a turn of the raw logs to a look at memory: a step of the clock, which may be the turn, is
-// followed, and what the new log's queue has held is still little.
+// Delay from a rotation of the raw logs to the reading of memory. Until then a step of the clock,
+// which may have caused the rotation, has been followed, and the new log's queue is still short.
 constexpr std::int64_t kSettled = 30 * 100;
 constexpr std::chrono::minutes kPatience{1};
 constexpr std::int64_t kMaxQueued = 1 << 20;
@@ -70,7 +70,7 @@ void put(std::uint8_t* to, std::uint64_t value) {
   for (int i = 7; i >= 0; --i, value >>= 8) to[i] = static_cast<std::uint8_t>(value);
 }
 
-/// One node with one axis; its message is changed where it lies.
+/// One node with one axis. Its message is changed in place.
 struct Node {
   std::vector<std::uint8_t> message;
   std::int64_t sequence = 0;
@@ -167,7 +167,7 @@ void Soak::step(std::int64_t i) {
   }
   if (i % kTick == 0) {
     history_->tick(daemon::steady_clock_us());
-    // At the pace of a building no disk is this far behind.
+    // At the pace of a real building, no disk is this far behind.
     (void)test::comes_true([&] { return history_->status().raw_queue_bytes < kMaxQueued; },
                            kPatience);
   }
@@ -178,7 +178,7 @@ void Soak::look_at_memory(std::int64_t time_us) {
   const std::int64_t turn = time_us / (1'000'000 * options_.rotate_s);
   if (turn != std::exchange(turn_, turn)) turned_at_ = at_;
   if (at_ != turned_at_ + kSettled || at_ * 100 < instants_) return;
-  // The log that was turned away is closed by a thread that has time when nobody else does.
+  // A thread of idle priority closes the rotated log.
   const auto open_logs = [&] {
     int count = 0;
     std::error_code none;
@@ -189,7 +189,7 @@ void Soak::look_at_memory(std::int64_t time_us) {
   };
   (void)test::comes_true(
       [&] { return open_logs() <= 1 && history_->status().raw_queue_bytes == 0; }, kPatience);
-  // The least of a second: what a thread has in its hands is no growth.
+  // The least value of a second: buffers in use by a thread are not growth.
   std::int64_t resident = INT64_MAX;
   for (int i = 0; i < kReadings; ++i) {
     std::this_thread::sleep_for(kBetweenReadings);
@@ -231,7 +231,8 @@ void Soak::on_estimate(const estimator::WindowEstimate& e) {
     compare_sums(e);
 }
 
-/// Of this window's solution from that of a pipeline that begins with a kept instant.
+/// Returns the difference of this window's solution from that of a pipeline that starts at a kept
+/// instant.
 double Soak::difference(const estimator::WindowEstimate& e, std::size_t from) const {
   estimator::PipelineConfig config = config_.pipeline;
   config.design = estimation_.pipeline().theta0();
@@ -258,8 +259,8 @@ double Soak::difference(const estimator::WindowEstimate& e, std::size_t from) co
 }
 
 void Soak::compare_sums(const estimator::WindowEstimate& e) {
-  // Blocks begin where a pipeline, or a newly tuned one, did: one of so many places, the last one
-  // found first.
+  // Blocks start where a pipeline, or a newly tuned one, started: at one of several instants. The
+  // last one is tried first.
   double least = 1;
   for (std::int64_t i = 0; i < kBlockRows && least > kSame; ++i) {
     const std::int64_t front = at_ + 1 - std::ssize(kept_);

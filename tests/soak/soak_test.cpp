@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A short soak: the same happens in ten minutes that happens in 30 days.
+// A short soak: ten minutes contain the events of 30 days.
 #include "tests/soak/soak_run.h"
 
 #include <cstdio>
@@ -16,9 +16,9 @@ constexpr double kMinutes = 10;
 constexpr double kSumError = 1e-9;
 constexpr std::int64_t kMaxGrowth_bytes = 3 << 20;  // SQLite's cache fills for longer
 constexpr std::int64_t kWindowsPerStep = 10;        // lost when the clock steps
-constexpr std::int64_t kRepeatedPerStep = 3;        // and told twice
+constexpr std::int64_t kRepeatedPerStep = 3;        // published twice
 
-TEST(Soak, LosesNothingAndRaisesNothing) {
+TEST(Soak, LosesNoSampleAndRaisesNoAlarm) {
   const test::TemporaryDirectory directory;
   SoakOptions o;
   o.days = kMinutes / 1440;
@@ -49,9 +49,9 @@ TEST(Soak, LosesNothingAndRaisesNothing) {
   std::printf(" MiB\n");
 }
 
-/// A short window of weak motion may hold less noise than is taken off it: nothing is left to tell
-/// its errors by. In this night that is after 47 minutes for the first time.
-TEST(Soak, AWindowThatHoldsLessNoiseThanIsTakenOffSaysNothing) {
+/// In a short window of weak motion, the measured noise may be less than the correction for it.
+/// Then its errors are unknown. In this night, the first such window comes after 47 minutes.
+TEST(Soak, PublishesNoValueIfTheNoiseCorrectionExceedsTheNoise) {
   constexpr double kSeconds = 2825, kRate_hz = 100;
   SoakOptions o;
   o.directory = "history";

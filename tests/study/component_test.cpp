@@ -111,7 +111,7 @@ struct BoucWenBenchmark {
   }
 };
 
-TEST(ComponentTest, TheBoucWenBenchmarkIsNamedAndItsUnseenSweepSimulated) {
+TEST(ComponentTest, NamesTheBoucWenBenchmarkAndSimulatesAnUnseenSweep) {
 #ifndef __OPTIMIZE__
   GTEST_SKIP() << "minutes without optimisation";
 #endif
@@ -165,7 +165,7 @@ struct HardeningDamper {
   }
 };
 
-TEST(ComponentTest, ASpringThatHardensAndADampingThatGrowsAreBothNamed) {
+TEST(ComponentTest, NamesAHardeningSpringAndAGrowingDamping) {
 #ifndef __OPTIMIZE__
   GTEST_SKIP() << "minutes without optimisation";
 #endif
@@ -208,7 +208,7 @@ MatrixXd sliding_record(double stick_m, std::uint64_t seed) {
   return out;
 }
 
-TEST(ComponentTest, AJointThatSticksElasticallyIsFoundUnderPrescribedMotion) {
+TEST(ComponentTest, FindsAnElasticallyStickingJointUnderPrescribedMotion) {
 #ifndef __OPTIMIZE__
   GTEST_SKIP() << "minutes without optimisation";
 #endif

@@ -22,7 +22,7 @@ Diagnosis diagnosis_of(const Small& small, const std::vector<Eigen::MatrixXd>& r
   return diagnose(plant, small.segments(records), {});
 }
 
-TEST(Diagnose, NothingHiddenIsAdequate) {
+TEST(Diagnose, FindsTheModelAdequateIfNothingIsHidden) {
   constexpr double kLow = 0.85, kHigh = 1.15;
   const Small small;
   const Diagnosis d = diagnosis_of(small, {small.record({}, 1), small.record({}, 2)});
@@ -34,7 +34,7 @@ TEST(Diagnose, NothingHiddenIsAdequate) {
     EXPECT_NEAR(d.model.theta[f] / small.truth[f], 1, 0.02) << small.table[f].name;
 }
 
-TEST(Diagnose, CubicFrameIsPlacedNamedAndSized) {
+TEST(Diagnose, FindsPlaceNameAndSizeOfACubicFrame) {
   constexpr double kTolerance = 0.1;
   const Small small;
   EffectPlace place;
@@ -52,7 +52,7 @@ TEST(Diagnose, CubicFrameIsPlacedNamedAndSized) {
   EXPECT_NEAR(e.parameters[0].plain() / std::pow(e.deformation, 3) / 8e10, 1, kTolerance);
 }
 
-TEST(Diagnose, GainOfOneChannelIsNotPhysics) {
+TEST(Diagnose, AttributesAGainErrorToTheChannel) {
   const Small small;
   std::vector<Eigen::MatrixXd> records{small.record({}, 1), small.record({}, 2)};
   for (Eigen::MatrixXd& record : records) record.col(1) *= 1.08;
@@ -63,7 +63,7 @@ TEST(Diagnose, GainOfOneChannelIsNotPhysics) {
   EXPECT_NEAR(d.model.gain[1], 0.08, 0.01);
 }
 
-TEST(Diagnose, ADropIsTimedByAllRecordsTogether) {
+TEST(Diagnose, TimesADropFromAllRecords) {
   const Small small;
   EffectPlace place;
   place.story = 1;
@@ -82,7 +82,7 @@ TEST(Diagnose, ADropIsTimedByAllRecordsTogether) {
   EXPECT_NEAR(d.model.effects.back().record_parameters[0][0].plain(), 14, 0.5);
 }
 
-TEST(Diagnose, AHarmonicForceBeginsWhenItDoes) {
+TEST(Diagnose, FindsTheOnsetOfAHarmonicForce) {
   constexpr double kFrom_s = 6.3, kForce_n = 2000, kNear_s = 0.2;
   const Small small;
   EffectPlace place;
@@ -105,7 +105,7 @@ TEST(Diagnose, AHarmonicForceBeginsWhenItDoes) {
     EXPECT_NEAR(std::hypot(waves[0].plain(), waves[1].plain()) / kForce_n, 1, 0.02);
 }
 
-TEST(Diagnose, RecordsOfDifferentBuildingsAreSaidToBe) {
+TEST(Diagnose, ReportsRecordsOfDifferentBuildings) {
   const Small small;
   Small other;
   for (int f = 0; f < 4; ++f)
@@ -116,7 +116,7 @@ TEST(Diagnose, RecordsOfDifferentBuildingsAreSaidToBe) {
   EXPECT_NE(d.reason.find("different buildings"), std::string::npos) << d.reason;
 }
 
-TEST(Diagnose, ARecordWithoutCommonTimeIsNotNamedAsPhysics) {
+TEST(Diagnose, NamesNoPhysicalEffectForARecordWithoutCommonTime) {
   constexpr int kLate = 40;  // 0.8 s
   const Small small;
   std::vector<Eigen::MatrixXd> records{small.record({}, 1), small.record({}, 2)};
@@ -166,7 +166,7 @@ TEST(LawMotion, LawsOppose) {
   }
 }
 
-TEST(RecordSegment, QuietNoiseIsFoundBesideStrongMotion) {
+TEST(RecordSegment, FindsQuietNoiseBesideStrongMotion) {
   constexpr double kTolerance = 0.12;
   Random random(7);
   Eigen::VectorXd a(12000);
@@ -177,7 +177,7 @@ TEST(RecordSegment, QuietNoiseIsFoundBesideStrongMotion) {
   EXPECT_NEAR(std::sqrt(quiet_noise_variance(a, 200)) / 0.01, 1, kTolerance);
 }
 
-TEST(RecordSegment, BandGoesToTimeAndBack) {
+TEST(RecordSegment, TransformsABandToTimeAndBack) {
   Random random(3);
   Eigen::MatrixXd a(1001, 1);
   for (Eigen::Index i = 0; i < a.rows(); ++i) a(i, 0) = random.normal();

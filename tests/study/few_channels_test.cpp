@@ -38,7 +38,7 @@ Diagnosis diagnosed(const DiagnosisInput& input) {
   return diagnose(input.plant, input.segments, options);
 }
 
-TEST(FewChannels, NothingHiddenIsAdequate) {
+TEST(FewChannels, FindTheModelAdequateIfNothingIsHidden) {
   const DiagnosisInput input = input_of(trial_of(1));
   EXPECT_EQ(input.plant.equations(), 20);
   EXPECT_EQ(input.plant.read_equations(), 4);
@@ -47,7 +47,7 @@ TEST(FewChannels, NothingHiddenIsAdequate) {
   EXPECT_LT(d.before[0].overall, 1.3 * d.before[0].overall_floor);
 }
 
-TEST(FewChannels, AChannelOfAnotherScaleIsFound) {
+TEST(FewChannels, FindAChannelOfAnotherScale) {
   const Diagnosis d = diagnosed(input_of(trial_of(1), 1.1));
   ASSERT_EQ(d.effects.size(), 1U);
   EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::gain_error);
@@ -56,7 +56,7 @@ TEST(FewChannels, AChannelOfAnotherScaleIsFound) {
   EXPECT_EQ(d.verdict, Verdict::explained);
 }
 
-TEST(FewChannels, ATurnedChannelIsFound) {
+TEST(FewChannels, FindATurnedChannel) {
   const Diagnosis d = diagnosed(input_of(trial_of(1), -1));
   ASSERT_EQ(d.effects.size(), 1U);
   EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::polarity);
@@ -64,7 +64,7 @@ TEST(FewChannels, ATurnedChannelIsFound) {
   EXPECT_EQ(d.verdict, Verdict::explained);
 }
 
-TEST(FewChannels, AHiddenOscillatorOnTheRoofIsFound) {
+TEST(FewChannels, FindAHiddenOscillatorOnTheRoof) {
   constexpr double kMass_kg = 80e3, kFrequency_hz = 1.3;
   daemon::TallTrial trial = trial_of(1);
   EffectPlace roof;
@@ -84,7 +84,7 @@ TEST(FewChannels, AHiddenOscillatorOnTheRoofIsFound) {
   EXPECT_EQ(d.verdict, Verdict::explained);
 }
 
-TEST(FewChannels, BendingOfTheDesignIsFittedAndElseNamed) {
+TEST(FewChannels, FitTheBendingOfTheDesignOrNameIt) {
   constexpr double kTruth_nmprad = 3e12;
   daemon::TallTrial trial = trial_of(1);
   trial.bending_nmprad = kTruth_nmprad;

@@ -10,7 +10,7 @@ namespace framewatch::estimator {
 namespace large_building_test {
 
 /// Eleven stories whose masses differ slightly from those of the design.
-TEST(LargeBuilding, MassesWithinTheirToleranceAreNoEffect) {
+TEST(LargeBuilding, ReportsNoEffectForMassesWithinTolerance) {
   constexpr double kTolerance = 0.01;
   const test::Small described = test::tower(11);
   test::Small real = described;

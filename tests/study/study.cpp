@@ -30,15 +30,15 @@ constexpr const char* kUsage =
 
 generate  writes cases: config.toml, train.csv.gz, holdout.csv.gz, truth.json. Each effect N times (1)
           per building, noise 1, 2, 5 % in turn. Groups: catalogue, nothing (10 N per building),
-          other_form, outside, two_effects (6 N per building), three_effects (3 N). Damping that no
-          dashpot makes (--mass-damping: ratio of the first mode, over 1 %; 20), noise that grows
-          toward low frequencies (--flicker: share of its power; 30), masses, gains and clocks a
-          little off.
-practice  imports the practice cases of FOLDER (that of the data folder), made with another program
+          other_form, outside, two_effects (6 N per building), three_effects (3 N). Cases have mass
+          damping (--mass-damping: ratio of the first mode, over 1 %; 20), noise that grows toward
+          low frequencies (--flicker: share of its power; 30), and small errors of masses, gains
+          and clocks.
+practice  imports the practice cases of FOLDER (default: in the data folder), made with another program
 run       runs `framewatch diagnose` on every case without a diagnosis, and the first N (0) of every
-          effect and building once more with the effect taken from the catalogue
-table     prints rates, confusion, gaps and what is asked as Markdown, of what has been run to its end;
-          exit 1 when there is no case or less than what is asked
+          effect and building again with the effect removed from the catalogue
+table     prints rates, confusion, gaps and requirements of all finished cases as Markdown; exits
+          with 1 if there is no case or a requirement is missed
 )";
 
 struct Arguments {

@@ -35,7 +35,7 @@ StudyCase made(const std::string& group, const std::string& name, const CaseOpti
   return *c;
 }
 
-TEST(StudyCase, IsAConfigurationTwoRecordsAndTheTruth) {
+TEST(StudyCase, WritesConfigurationTwoRecordsAndTruth) {
   const test::TemporaryDirectory folder;
   for (const std::string& building : building_kinds()) {
     const std::string directory = folder.path(building);
@@ -49,7 +49,7 @@ TEST(StudyCase, IsAConfigurationTwoRecordsAndTheTruth) {
       EXPECT_GT(std::filesystem::file_size(directory + record), 10000u);
     const auto outcome = score(directory);
     ASSERT_TRUE(outcome);
-    EXPECT_EQ(outcome->verdict, "refused") << "nobody has diagnosed it";
+    EXPECT_EQ(outcome->verdict, "refused") << "it has no diagnosis";
     EXPECT_EQ(outcome->truths, 0);
   }
 }
@@ -63,7 +63,7 @@ TEST(StudyCase, TheSameSeedGivesTheSameRecords) {
   EXPECT_NE(measured(a, 1), measured(made("catalogue", "cubic_stiffness", other), 1));
 }
 
-TEST(StudyCase, NoiseIsAsLargeAsItIsSaidToBe) {
+TEST(StudyCase, NoiseHasItsDeclaredSize) {
   const StudyCase loud = made("nothing", "none", quick());
   StudyCase still = loud;
   still.options.noise_ratio = 0;
@@ -94,7 +94,7 @@ TEST(StudyCase, NoiseGrowsTowardLowFrequencies) {
   EXPECT_GT(power_of_mean(0.3), 4 * power_of_mean(0));
 }
 
-TEST(StudyCase, DampingIsNoneThatDashpotsBetweenFloorsMake) {
+TEST(StudyCase, AddsMassDampingWithDashpotsToTheGround) {
   CaseOptions none = quick(), some = quick();
   none.mass_damping = 0;
   some.mass_damping = 0.5;
@@ -105,12 +105,12 @@ TEST(StudyCase, DampingIsNoneThatDashpotsBetweenFloorsMake) {
   EXPECT_LT(clean_record(b, 0).norm(), 0.98 * clean_record(a, 0).norm());
 }
 
-TEST(StudyCase, MayHideThreeEffects) {
+TEST(StudyCase, HidesThreeEffects) {
   const StudyCase c = made("three_effects", "cubic_stiffness+gain_error+extra_mass", quick());
   EXPECT_EQ(c.hidden.effects.size(), 3U);
 }
 
-TEST(StudyCase, WhatIsHiddenShows) {
+TEST(StudyCase, HiddenEffectsShowAboveTheNoise) {
   constexpr double kShows =
       2;  // times the noise of all channels; a sensor's fault is in one channel
   for (const char* name :
@@ -126,7 +126,7 @@ TEST(StudyCase, WhatIsHiddenShows) {
   }
 }
 
-TEST(Practice, IsImportedInTheCataloguesWords) {
+TEST(Practice, IsImportedWithTheNamesOfTheCatalogue) {
   FRAMEWATCH_DATA_OR_SKIP(truth, "practice/case-009/truth.json");
   const std::string source = std::filesystem::path(truth).parent_path().string();
   const test::TemporaryDirectory folder;
@@ -145,7 +145,7 @@ TEST(Practice, IsImportedInTheCataloguesWords) {
 
 /// A floor with two digits. Of two effects, the one that does not equal a lower stiffness in every
 /// record.
-TEST(Practice, TellsWhatThereIsToFind) {
+TEST(Practice, ListsTheEffectsToFind) {
   FRAMEWATCH_DATA_OR_SKIP(data, "practice/case-009/truth.json");
   const std::filesystem::path cases = std::filesystem::path(data).parent_path().parent_path();
   const test::TemporaryDirectory folder;
@@ -164,7 +164,7 @@ TEST(Practice, TellsWhatThereIsToFind) {
       {"kind": "frame", "direction": "x", "story": 1, "frame": "y1"}})"));
 }
 
-TEST(StudyScore, JudgesNamePlaceAndGap) {
+TEST(StudyScore, ScoresNamePlaceAndGap) {
   const test::TemporaryDirectory folder;
   const std::string directory = folder.path("case");
   std::string error;

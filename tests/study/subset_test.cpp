@@ -52,7 +52,7 @@ void PrintTo(const HiddenEffect& effect, std::ostream* out) {
 }
 class StudyEffects : public testing::TestWithParam<HiddenEffect> {};
 
-TEST_P(StudyEffects, AreNamedAtTheirPlaces) {
+TEST_P(StudyEffects, HaveNamesAndPlaces) {
   const Outcome o = diagnosed("catalogue", GetParam().name, GetParam().seed, GetParam().noise);
   EXPECT_TRUE(o.all_right()) << o.verdict;
 }
@@ -68,22 +68,22 @@ INSTANTIATE_TEST_SUITE_P(Subset, StudyEffects,
                          [](const auto& effect) { return std::string(effect.param.name); });
 
 // One mass would act along the same two directions.
-TEST(StudySubset, TwoEffectsAtOneCrossingAreBothFound) {
+TEST(StudySubset, FindsTwoEffectsAtOneCrossing) {
   const Outcome o = diagnosed("two_effects", "tuned_mass_damper+two_sided_gap", 2300049, 0.02);
   EXPECT_TRUE(o.all_right()) << o.verdict;
 }
 
-TEST(StudySubset, NothingHiddenIsAdequate) {
+TEST(StudySubset, FindsTheModelAdequateIfNothingIsHidden) {
   EXPECT_EQ(diagnosed("nothing", "none", 4100).verdict, "adequate");
 }
 
-TEST(StudySubset, AnEffectThatIsNotInTheCatalogueIsNotNamedConfidently) {
+TEST(StudySubset, NamesAnUnknownEffectOnlyWithDoubt) {
   const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, kNoise, {"two_sided_gap"});
   EXPECT_FALSE(o.confidently_wrong) << (o.named.empty() ? "" : o.named.front());
   EXPECT_NE(o.verdict, "adequate");
 }
 
-TEST(DiagnoseRefuses, WhatItCannotJudge) {
+TEST(DiagnoseRefuses, RecordsThatItCannotJudge) {
   constexpr int kBadInput = 2;
   const test::TemporaryDirectory folder;
   const std::string directory = folder.path("case"), brief = folder.path("brief.csv");

@@ -28,7 +28,7 @@ std::vector<MatrixXd> turned(std::vector<MatrixXd> records, Index axis) {
   return records;
 }
 
-TEST(WrongLabels, ABaseSensorTurnedByHalfATurnIsFound) {
+TEST(WrongLabels, FindABaseSensorTurnedByHalfATurn) {
   for (const Index axis : {kBaseX, kBaseY}) {
     const Diagnosis d = diagnosed(turned(test::records_with({}, {1, 2}), axis));
     ASSERT_EQ(d.effects.size(), 1U) << axis;
@@ -38,7 +38,7 @@ TEST(WrongLabels, ABaseSensorTurnedByHalfATurnIsFound) {
   }
 }
 
-TEST(WrongLabels, OneStoryWithTwoChannelsExchangedIsFound) {
+TEST(WrongLabels, FindTwoExchangedChannelsOfAStory) {
   for (const auto& [a, b] : {std::pair<Index, Index>{0, 1}, {1, 3}}) {
     std::vector<MatrixXd> records = test::records_with({}, {1, 2});
     for (MatrixXd& record : records) record.col(a).swap(record.col(b));
@@ -50,7 +50,7 @@ TEST(WrongLabels, OneStoryWithTwoChannelsExchangedIsFound) {
   }
 }
 
-TEST(WrongLabels, ALawBesideATurnedBaseSensorIsFound) {
+TEST(WrongLabels, FindALawBesideATurnedBaseSensor) {
   const Diagnosis d = diagnosed(
       turned(test::records_with(
                  {test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {2e9})}, {1, 2}),

@@ -15,7 +15,7 @@ namespace framewatch::test {
 
 constexpr std::int64_t kTrafficStart_us = 1'700'000'000'000'000;
 
-/// `configs/can/NAME.toml`.
+/// Returns `configs/can/NAME.toml`.
 inline daemon::Config can_example(const std::string& name) {
   std::vector<daemon::ConfigProblem> problems;
   const auto config =
@@ -24,13 +24,13 @@ inline daemon::Config can_example(const std::string& name) {
   return config.value_or(daemon::Config{});
 }
 
-/// 2.5 Hz, each axis with a phase of its own.
+/// Returns a motion of 2.5 Hz, with a different phase for each axis.
 inline double can_wave(std::size_t axis, double t_s) {
   return std::sin(2 * M_PI * 2.5 * t_s + 0.4 * static_cast<double>(axis));
 }
 
-/// A building's stamped frames: instants at the configured rate, frames of a bus one after the
-/// other.
+/// Returns a building's stamped frames: instants at the configured rate, frames of a bus one after
+/// the other.
 inline std::vector<drivers::BusFrame> can_traffic(const daemon::Config& config, int instants,
                                                   double unit = 1) {
   drivers::CanEncoder encoder(config.can);

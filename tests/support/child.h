@@ -8,7 +8,7 @@
 
 namespace framewatch::test {
 
-/// Another process; killed when a test forgets it.
+/// A child process. The destructor kills it.
 class Child {
  public:
   explicit Child(std::vector<std::string> arguments);
@@ -18,7 +18,7 @@ class Child {
 
   pid_t pid() const { return pid_; }
   void signal(int number) const;
-  /// Its exit code, 128 and its signal when one ended it.
+  /// Returns its exit code; 128 plus the signal if a signal ended it.
   int wait();
   int stop(int number) {
     signal(number);

@@ -10,7 +10,7 @@
 
 namespace framewatch::test {
 
-/// One story, one bay each way, everything it needs and no more.
+/// One story, one bay each way, with only the required keys.
 inline constexpr const char* kGoodConfig = R"([structure]
 stories = 1
 frames_x = ["y1", "y2"]

@@ -46,7 +46,7 @@ TableModel table_model(estimator::FloorModel floor) {
 
 namespace {
 
-/// Parameters with which an effect of the table shows; empty: it has none.
+/// Parameters with which an effect of the table is visible; empty if it has none.
 std::vector<double> example_values(estimator::EffectKind kind, double size) {
   using enum estimator::EffectKind;
   switch (kind) {

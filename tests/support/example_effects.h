@@ -18,8 +18,8 @@ struct TableModel {
 };
 TableModel table_model(estimator::FloorModel floor = estimator::FloorModel::flexible);
 
-/// An effect of the kind at its first place, of a size that matters when frames deform by about
-/// 5 mm; `size` scales what makes it strong, 0 is no effect.
+/// Returns an effect of the kind at its first place, visible when frames deform by about 5 mm.
+/// `size` scales its strength; 0 means no effect.
 estimator::Effect example_effect(estimator::EffectKind kind, const TableModel& model,
                                  double size = 1);
 

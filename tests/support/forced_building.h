@@ -13,12 +13,12 @@
 
 namespace framewatch::test {
 
-/// A linear building on a base that rests or shakes, driven by a force at one place. Exact while
-/// force and ground are linear within a step, by the matrix exponential; not the estimator's
-/// scheme.
+/// A linear building on a base at rest or in motion, driven by a force at one place. Uses the
+/// matrix exponential (not the estimator's scheme), which is exact if force and ground are linear
+/// within a step.
 class ForcedBuilding : public estimator::SimulatedBuilding {
  public:
-  /// lever: share of the force on every degree of freedom. force: N at a time, s.
+  /// lever: share of the force on every degree of freedom. force: N at a time in s.
   ForcedBuilding(const estimator::Structure& structure, const Eigen::VectorXd& theta,
                  Eigen::VectorXd lever, std::function<double(double)> force, double step_s);
 

@@ -7,7 +7,7 @@
 
 namespace framewatch::test {
 
-/// A disk that is full: files of this process cannot grow beyond some bytes.
+/// Imitates a full disk: files of this process cannot grow beyond this size.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {

@@ -12,15 +12,15 @@
 
 namespace framewatch::test {
 
-/// The two-story table with a history in `directory`, of periods of 1, 2 and 4 s.
+/// Returns the two-story table with a history in `directory`, with periods of 1, 2 and 4 s.
 daemon::Config table_with_history(const std::string& directory);
 
-/// Every sample of a history between two times.
+/// Returns every sample of a history between two times.
 std::vector<daemon::RawCount> raw_counts(const std::string& directory,
                                          std::int64_t from_us = INT64_MIN / 2,
                                          std::int64_t to_us = INT64_MAX / 2);
 
-/// Whether it becomes true within `limit`.
+/// Returns true if the condition becomes true within `limit`.
 template <typename Condition>
 bool comes_true(Condition condition, std::chrono::milliseconds limit) {
   for (const auto until = std::chrono::steady_clock::now() + limit;

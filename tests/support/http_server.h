@@ -12,25 +12,25 @@ struct MHD_Connection;
 
 namespace framewatch::test {
 
-/// What one request brought.
+/// A received request.
 struct HttpRequest {
   std::string method, path, body;
   std::map<std::string, std::string> headers;  ///< names in lower case
 };
 
-/// A web server on 127.0.0.1 that answers what it is told to.
+/// A web server on 127.0.0.1 with answers that the test sets.
 class HttpServer {
  public:
-  /// port 0: any. With a certificate and its key, as PEM texts, it speaks https.
+  /// port 0: any. With a certificate and its key, as PEM texts, it uses https.
   explicit HttpServer(int port = 0, const std::string& certificate = "",
                       const std::string& key = "");
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// The status of the next answers, one each; after them the last one stays.
+  /// Sets the status of the next answers, one each. The last one stays.
   void answer(std::vector<unsigned> statuses);
-  /// Every answer comes so much later.
+  /// Delays every answer by this time.
   void delay(std::chrono::milliseconds by);
   int port() const { return port_; }
   std::vector<HttpRequest> requests() const;
@@ -38,7 +38,7 @@ class HttpServer {
  private:
   struct Callbacks;
 
-  mutable std::mutex mutex_;  ///< guards what is below
+  mutable std::mutex mutex_;  ///< guards the members below
   std::vector<unsigned> statuses_{200};
   std::chrono::milliseconds delay_{0};
   std::vector<HttpRequest> requests_;

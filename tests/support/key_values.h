@@ -9,7 +9,7 @@
 
 namespace framewatch::test {
 
-/// A value that the key may have and that is not its default, as TOML writes it.
+/// Returns a value for the key that is not its default, as TOML text.
 inline std::string another_value(const daemon::Option& o) {
   using daemon::OptionType;
   switch (o.type) {
@@ -20,14 +20,14 @@ inline std::string another_value(const daemon::Option& o) {
     case OptionType::boolean:
       return o.default_value == "true" ? "false" : "true";
     case OptionType::choice:
-      // Not the first of them: a field that is not written has that one, mostly.
+      // Not the first choice, because an unset field often has that value.
       return "\"" + daemon::choices(o).back() + "\"";
     case OptionType::integer:
     case OptionType::number:
     case OptionType::grid: {
       const double low = o.range.min > -1e12 ? o.range.min : -1;
       const double high = o.range.max < 1e12 ? o.range.max : 1e6;
-      // A fortieth of the range: few defaults are there.
+      // A fortieth of the range, where few defaults are.
       const double value = low + (high - low) / 40;
       std::string text = o.type == OptionType::integer
                              ? fmt::format("{}", static_cast<long>(value) + 1)

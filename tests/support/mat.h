@@ -9,7 +9,7 @@
 
 namespace framewatch::test {
 
-/// A MATLAB file, level 5 or 7.3, with variables of every kind.
+/// Writes a MATLAB file, level 5 or 7.3, with variables of every kind.
 class MatWriter {
  public:
   explicit MatWriter(const std::string& path, mat_ft level = MAT_FT_MAT5,
@@ -19,7 +19,7 @@ class MatWriter {
   MatWriter(const MatWriter&) = delete;
   MatWriter& operator=(const MatWriter&) = delete;
 
-  /// `values` stand column after column.
+  /// `values` are column by column.
   MatWriter& add(const char* name, const std::vector<double>& values, std::size_t rows,
                  std::size_t columns) {
     return write(array(name, values, rows, columns));

@@ -10,7 +10,7 @@
 
 namespace framewatch::test {
 
-/// One channel's samples without a gap, as other people's recorders write them.
+/// Samples of one channel without a gap, in the format of other recorders.
 struct SeedSpan {
   std::string location = "01", channel = "HN1";
   std::int64_t start_us = 0;
@@ -25,7 +25,7 @@ inline void append_record(char* record, int length, void* to) {
   static_cast<std::string*>(to)->append(record, static_cast<std::size_t>(length));
 }
 
-/// miniSEED 2 of station XX.TEST; the samples are rounded where the encoding wants integers.
+/// Returns miniSEED 2 of station XX.TEST. Samples are rounded if the encoding needs integers.
 inline std::string miniseed(const SeedSpan& span) {
   std::string out;
   MSRecord* record = msr_init(nullptr);

@@ -14,7 +14,7 @@ using daemon::table1_theta;
 using daemon::table2;
 using daemon::table2_theta;
 
-/// Records of the data folder; empty when it is not there.
+/// Returns the folder of the records; empty if it does not exist.
 std::optional<estimator::GroundMotion> el_centro_ns();
 std::optional<estimator::GroundMotion> hachinohe_ns();
 

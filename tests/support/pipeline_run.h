@@ -13,14 +13,14 @@ namespace framewatch::test {
 Eigen::MatrixXd shaken(const estimator::Structure& structure, const Eigen::VectorXd& theta,
                        double rate_hz, double duration_s, double noise_ratio = 0);
 
-/// A configuration with sensors everywhere and no design.
+/// Returns a configuration with sensors everywhere and no design.
 estimator::PipelineConfig pipeline_config(const estimator::Structure& structure,
                                           double rate_hz = 100);
 
-/// What decides whether a sample is delivered: (instant, axis).
+/// Decides whether a sample is delivered: (instant, axis).
 using Delivered = std::function<bool(int, int)>;
 
-/// Everything a pipeline gives out for these accelerations, the first instant at time 0, and its
+/// The output of a pipeline for these accelerations, with the first instant at time 0, and its
 /// counters at the end.
 struct PipelineRun {
   std::vector<estimator::WindowEstimate> estimates;
@@ -29,7 +29,7 @@ struct PipelineRun {
 PipelineRun run_pipeline(const estimator::PipelineConfig& config, const Eigen::MatrixXd& accel,
                          const Delivered& delivered = {});
 
-/// The sample of an axis at an instant.
+/// Returns the sample of an axis at an instant.
 estimator::AccelSample sample_at(const Eigen::MatrixXd& accel, double rate_hz, int instant,
                                  int axis);
 

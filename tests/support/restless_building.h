@@ -13,25 +13,25 @@
 
 namespace framewatch::test {
 
-/// A building on ground that is never at rest, for as long as one likes: both ways white noise
-/// through the ground's resonance and a low-pass, in steps half as long as the samples'; between
-/// steps it is linear, and the building's response to that exact. Not the estimator's scheme.
+/// A building on ground that moves all the time, for any duration. In both directions the ground
+/// is white noise through its resonance and a low-pass, in half steps of the samples. It is linear
+/// between steps, and the building's response to it is exact. Not the estimator's scheme.
 class RestlessBuilding {
  public:
   static constexpr double kRate_hz = 100;
 
-  /// axes: what is measured, in any order.
+  /// axes: the measured ones, in any order.
   RestlessBuilding(const estimator::Structure& structure, const Eigen::VectorXd& theta,
                    const std::vector<estimator::SensorAxis>& axes, std::uint64_t seed);
 
-  /// Takes time to compute: not for every instant.
+  /// Takes time to compute; do not call it for every instant.
   void set_theta(const Eigen::VectorXd& theta) { building_.set_theta(theta); }
   /// One-sided density of the ground's acceleration at its resonance, m/s^2/sqrt(Hz).
   void set_ground(double density) { ground_density_ = density; }
   /// Of every axis, one-sided, m/s^2/sqrt(Hz).
   void set_noise(double density) { noise_density_ = density; }
 
-  /// What the axes measure at the next instant, m/s^2.
+  /// Returns the measurements of the axes at the next instant, m/s^2.
   const Eigen::VectorXd& next();
 
  private:
@@ -47,7 +47,7 @@ class RestlessBuilding {
   std::vector<Section> sections_;
   Eigen::Vector2d before_ = Eigen::Vector2d::Zero();
   double ground_density_ = 0, noise_density_ = 0;
-  std::vector<Eigen::Index> sensed_;  ///< degree of freedom, or behind them base x, base y
+  std::vector<Eigen::Index> sensed_;  ///< degree of freedom; base x and base y follow behind
   Eigen::VectorXd measured_;
 };
 

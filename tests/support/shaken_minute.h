@@ -9,12 +9,12 @@
 
 namespace framewatch::test {
 
-/// Table 1's building under a minute of strong shaking, 5 % noise on every accelerometer, and what
-/// a pipeline with a wrong design says of it.
+/// Table 1's building under a minute of strong shaking with 5 % noise on every accelerometer, and
+/// the output of a pipeline with a wrong design.
 class ShakenMinute {
  public:
   static constexpr double kDuration_s = 60, kNoise = 0.05;
-  /// What a frame of the first story loses, and when.
+  /// The loss of a frame of the first story, and its time.
   static constexpr double kDamage = 0.05, kDamage_s = 30;
 
   ShakenMinute();
@@ -22,7 +22,7 @@ class ShakenMinute {
   const estimator::ParameterTable& table() const { return table_; }
   /// By WindowEstimate::window.
   std::vector<double> windows_s() const;
-  /// Every window of one motion.
+  /// Returns every window of one motion.
   void run(std::uint64_t seed, bool damaged,
            const std::function<void(const estimator::WindowEstimate&)>& take) const;
 

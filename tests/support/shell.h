@@ -10,13 +10,13 @@
 
 namespace framewatch::test {
 
-/// What a command of the shell did.
+/// The result of a shell command.
 struct ShellResult {
-  int status = -1;  ///< its exit status; -1: a signal ended it
+  int status = -1;  ///< exit status; -1: a signal ended it
   std::string out, err;
 };
 
-/// Runs a line of bash in `directory`, where $F is the program. Standard input is empty.
+/// Runs a line of bash in `directory`; $F is the program. Standard input is empty.
 inline ShellResult shell(const TemporaryDirectory& directory, const std::string& line) {
   write_file(directory.path(".line"), "F=" FRAMEWATCH_PROGRAM "\n" + line + "\n");
   const std::string command = "cd " + directory.path("") + " && bash .line </dev/null >.out 2>.err";

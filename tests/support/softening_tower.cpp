@@ -53,7 +53,7 @@ SofteningTower::SofteningTower(std::uint64_t seed, double softening, double nois
     config_.axes[static_cast<std::size_t>(a)].noise_density = sigma_[a] / std::sqrt(kRate_hz / 2);
 }
 
-/// The rms of channels and drifts under shaking of level 1; then at rest again.
+/// Measures the rms of channels and drifts under shaking of level 1; returns to rest.
 void SofteningTower::measure_noise() {
   Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(sigma_.size()), drifts = usual_;
   const auto instants = static_cast<int>(kMeasured_s * kRate_hz);

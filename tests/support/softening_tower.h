@@ -24,18 +24,19 @@ class SofteningTower {
   static constexpr int kStories = 20;
   static constexpr double kRate_hz = 100, kRise_s = 2, kFall_s = 20;
 
-  /// softening: of stiffness at very large motion, relative; 0: none. noise_ratio: of every
+  /// softening: loss of stiffness at very large motion, relative; 0: none. noise_ratio: of every
   /// channel, over the rms of its motion under shaking of level 1.
   SofteningTower(std::uint64_t seed, double softening, double noise_ratio);
 
   const estimator::PipelineConfig& config() const { return config_; }
-  /// Keeps its motion.
+  /// Sets new stiffnesses; the motion continues.
   void lose(int story, double ratio) { stiffness_[story - 1] *= 1 - ratio; }
-  /// Of stories in series, from `first` to `last`, without softening, N/m.
+  /// Returns the stiffness of stories `first` to `last` in series, without softening, N/m.
   double stiffness(int first, int last) const {
     return 1 / stiffness_.segment(first - 1, last - first + 1).inverse().sum();
   }
-  /// What the channels show at the next instant, m/s^2. level: of the ground's motion, 1: strong.
+  /// Returns the channels' measurements at the next instant, m/s^2. level: of the ground's motion;
+  /// 1: strong.
   const Eigen::VectorXd& next(double level);
 
  private:

@@ -12,7 +12,7 @@
 
 namespace framewatch::test {
 
-/// So many numbers in columns, `other` where no other is known.
+/// Returns `count` numbers in columns; `other` for all that are not given.
 inline std::string numbers(std::size_t count, std::size_t per_line, std::size_t width,
                            const std::map<std::size_t, std::string>& known,
                            const std::string& other) {
@@ -37,7 +37,7 @@ struct CosmosChannel {
       "End-of-data for ChanHNE acceleration\n";
 };
 
-/// A file of COSMOS v1.20 with this channel: comments on line 38, values from line 41.
+/// Returns a file of COSMOS v1.20 with this channel: comments on line 38, values from line 41.
 inline std::string cosmos(const CosmosChannel& c = {}) {
   return fmt::format(
              "Uncorrected acceleration  (Format v01.20 with 5 text lines)\n"
@@ -80,7 +80,7 @@ inline std::string cosmos(const CosmosChannel& c = {}) {
          c.comment + c.values;
 }
 
-/// A corrected accelerogram of the USGS' SMC format; whole numbers changed, by place.
+/// Returns a corrected accelerogram in the USGS' SMC format, with whole numbers changed by place.
 inline std::string smc(const std::map<std::size_t, std::string>& changed = {}) {
   std::map<std::size_t, std::string> integers = {
       {0, "-32768"}, {1, "1994"}, {2, "17"},  {3, "12"}, {4, "31"}, {5, "3"},  {6, "250"},
@@ -110,7 +110,7 @@ struct SacChange {
   int integer = 0;
 };
 
-/// A SAC file of three values, 1, -2 and 3, at 200 Hz, in this or the other order of bytes.
+/// Returns a SAC file of three values, 1, -2 and 3, at 200 Hz, in either byte order.
 inline std::string sac(bool other_byte_order = false, const std::vector<SacChange>& changed = {}) {
   std::vector<std::uint32_t> words(110, static_cast<std::uint32_t>(-12345));
   const auto put = [&](std::size_t at, float value) {

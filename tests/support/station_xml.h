@@ -15,8 +15,8 @@ struct XmlChannel {
   std::string sensitivity = "426667", unit = "M/S**2";
 };
 
-/// A StationXML file of these channels, a station for each: the first one's element is on line 6,
-/// its azimuth on 10, its sensitivity on 15.
+/// Returns a StationXML file of these channels, one station each. The first station's element is
+/// on line 6, its azimuth on 10, its sensitivity on 15.
 inline std::string station_xml(const std::vector<XmlChannel>& channels) {
   std::string out =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"

@@ -1,7 +1,6 @@
-# From ctest's JUnit file: one line per suite, "<preset>/<suite> passed failed skipped seconds", where
-# a test's suite is its name up to the first dot. Reasons for skipping are appended to `skips`; to
-# `failures`, what failed, each with twelve lines of its output: from its first failure on, or the last.
-# Variables: preset, skips, failures.
+# Summarizes ctest's JUnit file: one line per suite, "<preset>/<suite> passed failed skipped seconds". A test's suite
+# is its name up to the first dot. Appends reasons for skipping to `skips`. Appends each failure to `failures`, with
+# twelve lines of its output, from its first failed check or the last ones. Variables: preset, skips, failures.
 function attribute(name,    text) {
   text = $0
   if (!sub(".*[ \t]" name "=\"", "", text)) return ""

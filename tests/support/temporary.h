@@ -9,7 +9,7 @@
 
 namespace framewatch::test {
 
-/// A directory of the test's own, removed with everything in it.
+/// A directory for one test, removed with its contents.
 class TemporaryDirectory {
  public:
   TemporaryDirectory();

@@ -24,7 +24,7 @@ std::string number(double value, const char* format) {
 const char* advice(EventColor color) {
   constexpr const char* kAdvice[] = {
       "Nothing needs to be done.", "Have a structural engineer read this report.",
-      "Have a structural engineer look at the building before it is used as before."};
+      "Have a structural engineer inspect the building before normal use."};
   return kAdvice[static_cast<std::size_t>(color)];
 }
 

@@ -58,13 +58,14 @@ void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
   const estimator::PipelineConfig& c = config.pipeline;
   for (const GroupOutlook& g : outlook.groups)
     if (!std::isfinite(g.window_error))
-      out.push_back(fmt::format(
-          "{}: this layout does not show it: no value of it will be published", g.parameter));
+      out.push_back(
+          fmt::format("{}: these sensors cannot show it: no value will be published", g.parameter));
     else if (!(g.window_error < c.options.max_error_k))
-      out.push_back(fmt::format(
-          "{}: its standard error will be {:.2g} %, above estimator.max_error_k = {:g} %: no value "
-          "of it will be shown under such shaking",
-          g.parameter, 100 * g.window_error, 100 * c.options.max_error_k));
+      out.push_back(
+          fmt::format("{}: its standard error will be {:.2g} %, above estimator.max_error_k = {:g} "
+                      "%: under such "
+                      "shaking, no value will be shown",
+                      g.parameter, 100 * g.window_error, 100 * c.options.max_error_k));
   for (const auto direction : {estimator::Direction::x, estimator::Direction::y}) {
     if ((direction == estimator::Direction::x ? c.structure.n() : c.structure.m()) == 0) continue;
     const bool measured =
@@ -73,10 +74,10 @@ void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
                                                     : axis.direction) == direction;
         });
     if (!measured)
-      out.push_back(
-          fmt::format("no channel above the base measures along {0}: nothing is identified "
-                      "of the frames parallel to {0}, and a change of them is not noticed",
-                      letter(direction)));
+      out.push_back(fmt::format(
+          "no channel above the base measures along {0}: the frames parallel to {0} are "
+          "not identified, and their changes are not noticed",
+          letter(direction)));
   }
 }
 
@@ -92,9 +93,9 @@ void single_stories_near_roof(const Config& config, const LayoutOutlook& outlook
         !std::isfinite(g.window_error))
       continue;
     out.push_back(fmt::format(
-        "{}: a single story near the roof, whose drift is the difference of two floors that move "
-        "nearly alike: noise and small errors of gain and time make most of it; do not trust its "
-        "value, a spacing of several stories serves better",
+        "{}: a single story near the roof. Its two floors move nearly alike, so noise and small "
+        "errors of gain and time make up most of its drift. Do not trust its value; leave several "
+        "stories between measured floors",
         g.parameter));
   }
 }
@@ -102,11 +103,11 @@ void single_stories_near_roof(const Config& config, const LayoutOutlook& outlook
 void free_top(const Config& config, const LayoutOutlook& outlook, std::vector<std::string>& out) {
   const int stories = config.pipeline.structure.stories;
   if (outlook.floors.empty() || outlook.floors.back() >= stories) return;
-  out.push_back(fmt::format(
-      "no channel on the roof, floor {}: what is above floor {} is judged by what it does to that "
-      "floor alone, and where the ground moves the first mode only, its stiffness has errors of 15 "
-      "% and its damping none that means anything; a channel on the roof tells most",
-      stories, outlook.floors.back()));
+  out.push_back(
+      fmt::format("no channel on the roof, floor {}: the stories above floor {} show only in the "
+                  "motion of that floor. If the ground moves only the first mode, their stiffness "
+                  "has errors of 15 % and their damping means nothing. Add a channel on the roof",
+                  stories, outlook.floors.back()));
 }
 
 /// Returns the direction of an axis in rad, counter-clockwise from +x.
@@ -138,15 +139,15 @@ void contradictions(const Config& config, std::vector<std::string>& out) {
       const double apart =
           std::remainder(angle_of(c.structure, one) - angle_of(c.structure, two), 2 * M_PI);
       if (M_PI - std::abs(apart) < kParallel_rad)
-        out.push_back(
-            fmt::format("channels '{}' and '{}' measure one motion of floor {} with opposite "
-                        "signs: they contradict each other unless one is mounted backwards; "
-                        "otherwise an azimuth is wrong, and their mean is meaningless",
-                        one.name, two.name, one.story));
+        out.push_back(fmt::format(
+            "channels '{}' and '{}' measure the same motion of floor {} with opposite "
+            "signs: unless one is mounted backwards, an azimuth is wrong and their mean "
+            "is meaningless",
+            one.name, two.name, one.story));
       else if (std::abs(apart) < kParallel_rad)
         out.push_back(
-            fmt::format("channels '{}' and '{}' measure one motion of floor {}: their mean is "
-                        "used; if they contradict each other, it is unknown which one is right",
+            fmt::format("channels '{}' and '{}' measure the same motion of floor {}: their mean is "
+                        "used; if they differ, framewatch cannot tell which one is right",
                         one.name, two.name, one.story));
     }
 }
@@ -159,8 +160,8 @@ void oblique(const Config& config, std::vector<std::string>& out) {
                        180 / M_PI;
     if (off <= kOblique_deg) continue;
     out.push_back(fmt::format(
-        "channel '{}' points {:.0f} degrees off the frames of direction {}: it measures both "
-        "directions; if it does not, its azimuth or azimuth_y_deg is wrong",
+        "channel '{}' points {:.0f} degrees off the frames of direction {} and so measures both "
+        "directions; if this is not meant, correct its azimuth or azimuth_y_deg",
         axis.name, off, letter(axis.direction)));
   }
 }
@@ -229,21 +230,21 @@ std::string layout_text(const LayoutOutlook& o, const estimator::Structure& s) {
                        or_dash(100 * g.design_error, "{:.2g} %"),
                        or_dash(100 * g.damping_error, "{:.2g} %"));
   out +=
-      "            by the design: stories' shares in their group off by 5 %, masses by 2 %; the "
-      "same in every window\n";
+      "            by the design: error if the stories' shares of their group are wrong by 5 % and "
+      "masses by 2 %; it is the same in every window\n";
   if (o.least_seen_loss < kNeverSeen)
     out += fmt::format(
-        "            by that noise alone, a story that loses {} of its stiffness is seen wherever "
-        "it is; story {} needs so much\n",
+        "            with this noise, the loss of {} of one story's stiffness is seen in every "
+        "story; story {} needs the most\n",
         or_dash(100 * o.least_seen_loss, "{:.2g} %"), o.weakest_story);
   else
-    out += fmt::format("            no loss of stiffness in story {} is seen by these sensors\n",
+    out += fmt::format("            these sensors do not show any loss of stiffness in story {}\n",
                        o.weakest_story);
   for (const AdvisedFloor& a : o.advised)
     out += fmt::format("advice      with channels on floor {}: {}\n", a.floor,
                        a.least_seen_loss < kNeverSeen
                            ? or_dash(100 * a.least_seen_loss, "{:.2g} %") + " is seen everywhere"
-                           : "places without any remain");
+                           : "some stories still show no loss");
   return out;
 }
 

@@ -38,8 +38,9 @@ void start_from_frequencies(double x_hz, double y_hz, const std::string& from, B
 }
 
 std::string take_frequencies(std::vector<double> values, bool periods, BuildingDraft& d) {
-  if (values.size() > 2) return "one first frequency, or two: along x, along y";
-  if (values.size() == 2 && !(d.has_x && d.has_y)) return "one: only one direction is measured";
+  if (values.size() > 2) return "give one first frequency, or two: along x, along y";
+  if (values.size() == 2 && !(d.has_x && d.has_y))
+    return "give one: only one direction is measured";
   std::string from = fmt::format(
       "first natural {} {} {}{}, as given", periods ? "period" : "frequency", list_text(values),
       periods ? "s" : "Hz", values.size() == 2 ? " (along x, along y)" : "");
@@ -86,13 +87,16 @@ bool may_be_decimal_comma(std::string_view text) {
 
 std::string ask_start(const BuildingDraft& d) {
   std::string out =
-      "Where tuning starts: the first natural frequency (1.8 Hz; 1.8, 2.1 Hz along x and y) or "
-      "period\n(0.55 s), the stiffness of a story (25 MN/m), or a rule of thumb: height";
+      "What is known of the stiffness? Tuning starts there. Give the first natural frequency (1.8 "
+      "Hz; "
+      "1.8,\n2.1 Hz along x and y), the period (0.55 s), the stiffness of a story (25 MN/m), or a "
+      "rule "
+      "of thumb:\nheight";
   if (height_m(d) > 0)
     out += fmt::format(" ({:.2g} Hz, 46 / height)", kFrequencyTimesHeight_mps / height_m(d));
-  out += " or stories\n";
+  out += " or stories";
   if (d.stories_known)
-    out += fmt::format("({:.2g} Hz, T = 0.1 s a story)",
+    out += fmt::format(" ({:.2g} Hz, T = 0.1 s per story)",
                        1 / (kPeriodOfStory_s * d.plan.structure.stories));
   return out + ", or none?";
 }
@@ -137,7 +141,7 @@ std::string take_start(const std::string& text, BuildingDraft& d, ColumnCache&) 
 
 std::string why_no_quantity(std::string_view text, const std::string& rule) {
   if (!may_be_decimal_comma(text)) return rule;
-  return "a comma between two digits can be read in two ways: write 3.5, or 3, 5 with a blank";
+  return "the comma may be decimal or separate two numbers: write 3.5, or 3, 5 with a blank";
 }
 
 std::optional<Quantity> parse_quantity(std::string_view text) {

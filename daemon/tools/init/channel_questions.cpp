@@ -47,7 +47,7 @@ class StationPlacing {
       if (equals == std::string::npos)
         refuse(text, "write NAME=PLACE, such as ch3=2, ch3=roof:x or ch3=unused");
       else if (!known)
-        refuse(text, "there is no such channel");
+        refuse(text, "the record has no such channel");
     }
   }
 
@@ -70,21 +70,23 @@ class StationPlacing {
       const StationPlace known = place_on_floor(*d.station, columns_, c, d.station_plan);
       const auto at = parse_station_place(answer.substr(name.size() + 1), known, d.station_plan);
       if (!at)
-        refuse(answer, fmt::format("a place is a floor, 0 to {}, base or roof, with :x, :y or :z "
-                                   "where the header does not say the direction; or unused",
-                                   d.station_plan.stories));
+        refuse(answer,
+               fmt::format("write a floor (0 to {}), base or roof, with :x, :y or :z if the "
+                           "header does not say the direction; or unused",
+                           d.station_plan.stories));
       return at;
     }
     if (!by_header)
       reading_.open.push_back(
           {"channel",
-           fmt::format("Where is {}{}? {}. Its floor (2, base, roof), with its direction where "
-                       "that is not said (2:x), or unused.",
-                       printable(name),
-                       columns_[c].header.place.empty()
-                           ? ""
-                           : fmt::format(" ({})", printable(columns_[c].header.place)),
-                       why),
+           fmt::format(
+               "Where is {}{}? {}. Give its floor (2, base, roof), with its direction if the "
+               "header does not say it (2:x); or unused.",
+               printable(name),
+               columns_[c].header.place.empty()
+                   ? ""
+                   : fmt::format(" ({})", printable(columns_[c].header.place)),
+               why),
            "",
            "",
            {},
@@ -158,9 +160,9 @@ class ChannelPlacing {
                        [&](const ChannelColumn& c) { return c.name == text.substr(0, equals); });
       const std::optional<Place> place = parse_place(structure_, text.substr(equals + 1));
       if (column == columns_.end())
-        refuse(text, "there is no such column; there are " + names_left());
+        refuse(text, "the file has no such column; columns without a place: " + names_left());
       else if (!place)
-        refuse(text, "no place of this building; places are " +
+        refuse(text, "this building has no such place; its places are " +
                          place_option(structure_, places_.front()) + " (" +
                          place_text(structure_, places_.front()) + ") to " +
                          place_option(structure_, places_.back()));
@@ -173,9 +175,9 @@ class ChannelPlacing {
     const auto at = std::find(places_.begin(), places_.end(), place) - places_.begin();
     std::optional<std::size_t>& there = column_of_place_[static_cast<std::size_t>(at)];
     if (there)
-      refuse(text, printable(columns_[*there].name) + " is there already");
+      refuse(text, printable(columns_[*there].name) + " already has this place");
     else if (is_used(column))
-      refuse(text, "the column has a place already");
+      refuse(text, "the column already has a place");
     else
       there = column;
   }
@@ -218,14 +220,15 @@ class ChannelPlacing {
     const auto missing = std::count(column_of_place_.begin(), column_of_place_.end(), std::nullopt);
     if (missing == 0) return;
     if (columns_.size() < places_.size())
-      open("bays", "",
-           fmt::format(
-               "this building needs {} channels, the base's and one for every frame of every "
-               "floor; there are {}. 0x0 has one frame for each direction{}",
-               places_.size(), columns_.size(),
-               reading_.draft.live == "can" ? "; several nodes that send one message take a "
-                                              "[[can_node]] each, by hand: docs/can.md"
-                                            : ""));
+      open(
+          "bays", "",
+          fmt::format(
+              "this building needs {} channels: those of the base and one for every frame of every "
+              "floor. The file has {}. With 0x0, one frame stands for each direction{}",
+              places_.size(), columns_.size(),
+              reading_.draft.live == "can" ? ". If several nodes send the same message, write a "
+                                             "[[can_node]] for each: docs/can.md"
+                                           : ""));
     else if (found.ambiguous)
       ask_reading(found, column_of_title[*found.ambiguous]);
     else
@@ -234,17 +237,18 @@ class ChannelPlacing {
   }
 
   void ask_reading(const ColumnPlaces& found, std::size_t column) {
-    open("titles",
-         fmt::format("{} can be read in two ways:\n  frames      {}\n  directions  {}\nWhich one "
-                     "do the titles mean?",
-                     printable(columns_[column].name), found.as_frame, found.as_direction),
-         "");
+    open(
+        "titles",
+        fmt::format("{} can be read in two ways:\n  frames      {}\n  directions  {}\nWhich one is "
+                    "meant: frames or directions?",
+                    printable(columns_[column].name), found.as_frame, found.as_direction),
+        "");
   }
 
   void ask_place(const Place& place) {
     open("channel",
-         fmt::format("Which column is {}? There are {}.", place_text(structure_, place),
-                     names_left()),
+         fmt::format("Which column belongs to {}? Columns without a place: {}.",
+                     place_text(structure_, place), names_left()),
          "", place);
   }
 

@@ -50,10 +50,10 @@ class Dialogue {
         terminal_(terminal) {}
 
   std::optional<BuildingPlan> run() {
-    terminal_.say(
-        fmt::format("A building, described for framewatch in {}. Enter takes what stands in "
-                    "[brackets]; back goes to\nthe question before, quit leaves without a file.\n",
-                    printable(path_)));
+    terminal_.say(fmt::format(
+        "Your answers describe a building in {}. Enter takes the answer in [brackets], back "
+        "returns to\nthe previous question, quit ends without a file.\n",
+        printable(path_)));
     while (!left_) {
       const InitReading reading = read_answers(answers_, false, files_);
       tell_understood(reading);
@@ -91,8 +91,8 @@ class Dialogue {
 
   void ask(const OpenQuestion& question) {
     if (!question.problem.empty()) {
-      terminal_.say(
-          fmt::format("  That does not do: {}\n", printable_lines(first_lines(question.problem))));
+      terminal_.say(fmt::format("  Please answer again: {}\n",
+                                printable_lines(first_lines(question.problem))));
       if (question.answer.empty())
         forget(question.option);
       else
@@ -107,7 +107,7 @@ class Dialogue {
     if (left_) return;
     if (answer == "back") return go_back();
     if (answer.empty()) answer = initial;
-    if (answer.empty()) return terminal_.say("  This one has no usual answer.\n");
+    if (answer.empty()) return terminal_.say("  This question has no default answer.\n");
     take(question, answer);
   }
 
@@ -145,16 +145,16 @@ class Dialogue {
   bool agreed(const InitReading& reading) {
     terminal_.say("\nUnderstood:\n" + summary_text(reading));
     const std::string remarks = remarks_(reading.draft.plan);
-    if (!remarks.empty()) terminal_.say("\nTo look at:\n" + remarks);
-    terminal_.say(fmt::format(
-        "\nEnter writes {}; a number changes that answer; quit leaves without a file.\n",
-        printable(path_)));
+    if (!remarks.empty()) terminal_.say("\nPlease check:\n" + remarks);
+    terminal_.say(
+        fmt::format("\nEnter writes {}; a number changes that answer; quit ends without a file.\n",
+                    printable(path_)));
     const std::string answer = line();
     if (left_) return false;
     if (answer.empty()) return true;
     const auto number = drivers::parse_integer(answer);
     if (!number || *number < 1 || *number > static_cast<std::int64_t>(reading.understood.size()))
-      terminal_.say("  A number of the list, Enter or quit.\n");
+      terminal_.say("  Type a number of the list, Enter or quit.\n");
     else
       change(reading.understood[static_cast<std::size_t>(*number - 1)].option);
     return false;
@@ -167,8 +167,8 @@ class Dialogue {
       return;
     }
     terminal_.say(
-        "\nWrite NAME=PLACE, such as acc3=2:y1, or base_x=0:x for the base; of a station ch3=2, "
-        "ch3=roof:x or ch3=unused.\n");
+        "\nWrite NAME=PLACE, such as acc3=2:y1, or base_x=0:x for the base. For a station, write "
+        "ch3=2, ch3=roof:x or ch3=unused.\n");
     const std::string answer = line();
     if (answer.empty()) return;
     const std::size_t equals = answer.rfind('=');
@@ -205,7 +205,7 @@ InitReading read_answers(const InitAnswers& answers, bool take_defaults, ColumnC
     const bool answered = answer != answers.by_option.end();
     if (!question.applies(d)) {
       if (answered && take_defaults)
-        out.open.push_back({question.option, "", "", "does not apply with the other answers", {}});
+        out.open.push_back({question.option, "", "", "does not fit the other answers", {}});
       continue;
     }
     const std::string initial = question.initial(d);

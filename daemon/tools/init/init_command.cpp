@@ -52,7 +52,7 @@ int refuse_answers(const InitReading& reading) {
   for (const OpenQuestion& open : reading.open) {
     std::string missing = fmt::format("is missing: {}", open.ask);
     std::replace(missing.begin(), missing.end(), '\n', ' ');
-    if (open.option == "live") missing += " Or is there a record: --record FILE?";
+    if (open.option == "live") missing += " Or give a record: --record FILE";
     std::string option = "--" + open.option;
     if (!open.column.empty()) option += " " + printable(open.column) + "=PLACE";
     if (open.place) option += " NAME=" + place_option(reading.draft.plan.structure, *open.place);
@@ -60,15 +60,14 @@ int refuse_answers(const InitReading& reading) {
                printable_lines(open.problem.empty() ? missing : open.problem));
   }
   const std::size_t count = reading.open.size();
-  return refuse("init",
-                fmt::format("{} answer{} missing or wrong; on a terminal they are asked for", count,
-                            count == 1 ? "" : "s"));
+  return refuse(
+      "init", fmt::format("{} answer{} missing or wrong; on a terminal, init asks for them", count,
+                          count == 1 ? "" : "s"));
 }
 
 std::string next_steps(const BuildingPlan& plan, const std::string& path) {
   const std::string config = shell_word(path);
-  std::string out =
-      fmt::format("{}: written. What follows:\n  framewatch check {}\n", path, config);
+  std::string out = fmt::format("{}: written. Next steps:\n  framewatch check {}\n", path, config);
   if (plan.record_files > 1)
     out += fmt::format(
         "  framewatch convert FILES station.lcmlog   (the {})\n"
@@ -82,8 +81,8 @@ std::string next_steps(const BuildingPlan& plan, const std::string& path) {
         config, plan.record);
   else if (plan.channels.front().column.source.empty())
     out += fmt::format(
-        "  framewatch replay {} RECORD --out estimates.lcmlog   (its columns named as the "
-        "channels)\n",
+        "  framewatch replay {} RECORD --out estimates.lcmlog   (its columns have the "
+        "channels' names)\n",
         config);
   if (!plan.channels.front().column.source.empty())
     out += fmt::format("  framewatch run {}\n", config);
@@ -95,7 +94,7 @@ int write(const BuildingPlan& plan, const InitArguments& a, const std::string& s
   const Judgement found = judge(a.out, text);
   print_problems(found.problems);
   if (!found.problems.empty())
-    return refuse("init", "these answers make no configuration; nothing was written");
+    return refuse("init", "these answers do not make a valid configuration; nothing was written");
   log_doubts(found.doubts);
   if (const std::string why = drivers::write_text_file(a.out, text); !why.empty())
     return refuse("init", why);
@@ -109,8 +108,9 @@ int write(const BuildingPlan& plan, const InitArguments& a, const std::string& s
 
 int init(const InitArguments& a) {
   if (a.out != drivers::kStandardOutput && !a.force && !drivers::is_absent(a.out))
-    return refuse("init",
-                  a.out + ": is there already; --force writes over it, --out FILE elsewhere");
+    return refuse(
+        "init",
+        a.out + ": already exists; use --force to overwrite it or --out FILE for another file");
   ColumnCache files;
   const InitReading reading = read_answers(a.answers, true, files);
   if (reading.open.empty()) {
@@ -127,7 +127,7 @@ int init(const InitArguments& a) {
     return out;
   };
   const auto plan = ask_building(a.answers, a.out, remarks, files, terminal());
-  if (!plan) return refuse("init", "left; nothing was written");
+  if (!plan) return refuse("init", "stopped; nothing was written");
   return write(*plan, a, "");
 }
 

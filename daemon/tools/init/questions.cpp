@@ -64,7 +64,7 @@ std::string understood_record(const Draft& d) {
 std::string take_live(const std::string& text, Draft& d, ColumnCache&) {
   if (text != "lcm" && text != "can" && text != "none") return "lcm, can or none";
   if (text == "can" && !d.plan.record.empty())
-    return "can: on CAN the channels are named as the bus' signals; leave the record out";
+    return "can reads the channels from the DBC file: answer none for the record";
   d.live = text;
   return "";
 }
@@ -107,21 +107,23 @@ std::string take_directions(const std::string& text, Draft& d, ColumnCache&) {
 
 std::string ask_bays(const Draft& d) {
   if (d.station)
-    return "Bays of the plan along x and along y, such as 2x1? With 0x0 one frame stands for all "
-           "of its\ndirection; torsion needs frames.";
+    return "How many bays has the plan along x and along y, such as 2x1? With 0x0, one frame "
+           "stands "
+           "for all\nframes of its direction; torsion then stays unknown.";
   std::string out =
-      "Bays of the plan along x and along y, such as 2x1? Every frame needs an accelerometer on "
-      "every\nfloor: ";
+      "How many bays has the plan along x and along y, such as 2x1? Every frame needs an "
+      "accelerometer\non every floor: ";
   out += d.has_x && d.has_y
-             ? "1x1 takes 4 a floor, 2x1 takes 5, 0x0 takes 2, one for each direction"
-         : d.has_x ? "0x0 takes 1 a floor, 0x1 takes 2, 0x2 takes 3"
-                   : "0x0 takes 1 a floor, 1x0 takes 2, 2x0 takes 3";
-  return out + (d.columns.empty() ? "." : fmt::format(". There are {} columns.", d.columns.size()));
+             ? "1x1 needs 4 per floor, 2x1 needs 5, 0x0 needs 2 (one for each direction)"
+         : d.has_x ? "0x0 needs 1 per floor, 0x1 needs 2, 0x2 needs 3"
+                   : "0x0 needs 1 per floor, 1x0 needs 2, 2x0 needs 3";
+  return out +
+         (d.columns.empty() ? "." : fmt::format(". The record has {} columns.", d.columns.size()));
 }
 
 std::string take_bays(const std::string& text, Draft& d, ColumnCache&) {
   const auto bays = parse_bays(text);
-  if (!bays) return "bays along x, an x, bays along y: 2x1, from 0x0 to 20x20";
+  if (!bays) return "write the bays along x, an x and the bays along y, such as 2x1; 0x0 to 20x20";
   estimator::Structure& s = d.plan.structure;
   s.frames_x.clear();
   s.frames_y.clear();
@@ -150,7 +152,7 @@ std::string take_lengths(const std::string& text, int count, bool count_known,
                          std::vector<double>& out) {
   const auto quantity = parse_quantity(text);
   if (!quantity || (!quantity->unit.empty() && quantity->unit != "m"))
-    return why_no_quantity(text, "lengths in m, between commas: 3.5 or 4.2, 3.5, 3.5");
+    return why_no_quantity(text, "lengths in m, separated by commas: 3.5 or 4.2, 3.5, 3.5");
   if (!count_known) return "";
   const auto values = spread(quantity->values, static_cast<std::size_t>(count));
   if (!values)
@@ -206,7 +208,7 @@ std::string take_mass(const std::string& text, Draft& d, ColumnCache&) {
   auto quantity = parse_quantity(text);
   if (!quantity)
     return why_no_quantity(
-        text, "kg of each floor (one or a list), or a density: 18000, 18 t, 500 kg/m2");
+        text, "the mass of a floor in kg (one or a list), or a density: 18000, 18 t, 500 kg/m2");
   if (quantity->unit == "kg/m^2") quantity->unit = "kg/m2";
   if (quantity->unit.empty()) quantity->unit = "kg";
   if (quantity->unit != "kg" && quantity->unit != "t" && quantity->unit != "kg/m2")
@@ -289,30 +291,36 @@ std::string fixed(const Draft&) {
 
 // Questions and defaults that do not depend on earlier answers.
 constexpr char kAskRecord[] =
-    "A record of its accelerometers (CSV and the like), from whose header the channels come? A "
-    "file's\nname, behind it what the file does not say (my.csv --unit g), or none";
-constexpr char kAskLive[] = "Where do live samples come from: lcm, can, or none (from files only)?";
+    "Is there a record of its accelerometers, such as a CSV file? Its header names the channels. "
+    "Give the\nfile name and options for what the file does not say (my.csv --unit g), or none";
+constexpr char kAskLive[] = "Where do live samples come from: lcm, can, or none (files only)?";
 constexpr char kAskInterface[] = "Which network interface is the CAN bus?";
 constexpr char kAskDbc[] = "Which DBC file describes the bus?";
 constexpr char kAskName[] = "What is the building called?";
 constexpr char kAskDirections[] =
     "Which horizontal directions do the accelerometers measure: x, y or both?";
-constexpr char kAskSpanX[] = "Spans along x, m (one for all, or each)?";
-constexpr char kAskSpanY[] = "Spans along y, m (one for all, or each)?";
+constexpr char kAskSpanX[] =
+    "How long are the spans along x, in m (one number for all, or a list)?";
+constexpr char kAskSpanY[] =
+    "How long are the spans along y, in m (one number for all, or a list)?";
 constexpr char kAskHeights[] =
-    "Story heights, m, from the bottom (one for all, or each: 4.2, 3.5, 3.5)?";
+    "How high are the stories, in m, from the bottom (one number for all, or a list: 4.2, 3.5, "
+    "3.5)?";
 constexpr char kAskFloors[] =
-    "Floors: flexible in their plane (found out too), or rigid as a slab without large openings?";
+    "Are the floors flexible in their plane (framewatch then estimates their stiffness too), or "
+    "rigid,\n"
+    "such as slabs without large openings: flexible or rigid?";
 constexpr char kAskMass[] =
-    "Mass of each floor with what it carries: 18000 (kg), 18 t, one for all or each; or 500 kg/m2?";
-constexpr char kAskArea[] = "Area of a floor, m^2?";
+    "What is the mass of each floor with its load: 18000 (kg) or 18 t, one number for all or a "
+    "list; or\na density, such as 500 kg/m2?";
+constexpr char kAskArea[] = "What is the area of a floor, in m^2?";
 constexpr char kAskBase[] =
     "Which level is the base, whose motion drives the stories above it: ground (the first "
-    "floor) or\nbasement?";
+    "floor)\nor basement?";
 constexpr char kAskPlan[] =
-    "Lengths of the plan along x and y, m, such as 40x25? Sensors are said to be at its "
+    "How long is the plan along x and y, in m, such as 40x25? The headers place sensors at its "
     "sides.";
-constexpr char kAskRate[] = "Samples a second of every accelerometer?";
+constexpr char kAskRate[] = "How many samples per second does each accelerometer give?";
 constexpr char kNone[] = "none", kCan0[] = "can0", kBuilding[] = "building", k100[] = "100",
                kGround[] = "ground";
 

@@ -131,7 +131,7 @@ std::string why_unused(const Level& level, char along, const StationPlan& plan) 
   if (level.kind == LevelKind::outside) return "not in the building";
   if (level.kind == LevelKind::basement && !plan.base_is_basement) return "below the base";
   if (along == 'z') return "vertical";
-  return (along == 'x' ? plan.has_x : plan.has_y) ? "" : "no frame is along it";
+  return (along == 'x' ? plan.has_x : plan.has_y) ? "" : "no frame has its direction";
 }
 
 }  // namespace

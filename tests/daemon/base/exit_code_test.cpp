@@ -28,7 +28,7 @@ namespace exit_code_test {
 namespace fs = std::filesystem;
 
 // Limits.
-constexpr std::chrono::seconds kSoon{30};  // for what takes a fraction of one
+constexpr std::chrono::seconds kSoon{30};  // for actions that take a fraction of one
 
 const std::string kScenario = FRAMEWATCH_SOURCE_DIR "/configs/scenario_table_two_story.toml";
 
@@ -37,7 +37,7 @@ struct Ran {
   std::string said;  ///< on stderr
 };
 
-/// `command` of the program in a shell; what goes to stdout is the command's to say.
+/// Runs `command` of the program in a shell. `command` may redirect stdout.
 Ran run(const std::string& command) {
   const test::TemporaryDirectory directory;
   const std::string said = directory.path("said");
@@ -50,7 +50,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(LastResort, AnExceptionIsSaidAndItsStatusIsTwo) {
+TEST(LastResort, ReportsAnExceptionWithStatusTwo) {
   testing::internal::CaptureStderr();
   now_runs("convert", false);
   EXPECT_EQ(run_to_the_end([]() -> int { throw std::runtime_error("nobody expected it"); }), 2);
@@ -63,14 +63,14 @@ TEST(LastResort, AnExceptionIsSaidAndItsStatusIsTwo) {
     EXPECT_TRUE(has(said, part)) << said;
 }
 
-TEST(LastResort, AServiceIsToBeStartedAgain) {
+TEST(LastResort, ReturnsOneForAServiceSoThatItRestarts) {
   testing::internal::CaptureStderr();
   now_runs("run", true);
   EXPECT_EQ(run_to_the_end([]() -> int { throw std::runtime_error("once"); }), 1);
   testing::internal::GetCapturedStderr();
 }
 
-TEST(LastResortDeathTest, AnExceptionThatLeavesAThreadIsSaidToo) {
+TEST(LastResortDeathTest, ReportsAnExceptionThatLeavesAThread) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(
       {
@@ -81,7 +81,7 @@ TEST(LastResortDeathTest, AnExceptionThatLeavesAThreadIsSaidToo) {
       testing::ExitedWithCode(2), "framewatch replay: in a thread");
 }
 
-TEST(LastResort, WhatAWorkerThrowsIsThrownByAllOfThem) {
+TEST(LastResort, WorkersRethrowAnException) {
   const Workers workers(4);
   EXPECT_THROW(workers.run("", 100,
                            [](int i) {
@@ -90,7 +90,7 @@ TEST(LastResort, WhatAWorkerThrowsIsThrownByAllOfThem) {
                std::runtime_error);
 }
 
-TEST(Workers, PiecesOfPiecesAreDoneOnceEach) {
+TEST(Workers, DoNestedTasksOnce) {
   constexpr int kPieces = 20, kParts = 7;
   const Workers workers(3);
   std::vector<std::vector<int>> done(kPieces, std::vector<int>(kParts, 0));
@@ -104,7 +104,7 @@ TEST(Workers, PiecesOfPiecesAreDoneOnceEach) {
   EXPECT_EQ(done, std::vector<std::vector<int>>(kPieces, std::vector<int>(kParts, 1)));
 }
 
-TEST(Workers, WhatAPieceOfAPieceThrowsIsThrown) {
+TEST(Workers, RethrowExceptionsOfNestedTasks) {
   const Workers workers(2);
   EXPECT_THROW(workers.run("", 4,
                            [&](int i) {
@@ -115,7 +115,7 @@ TEST(Workers, WhatAPieceOfAPieceThrowsIsThrown) {
                std::runtime_error);
 }
 
-TEST(Program, StandardOutputThatTakesNothingIsAFailure) {
+TEST(Program, FailsIfStandardOutputIsFull) {
   for (const std::string& command :
        {"check " + test::table_config(), "check --json " + test::table_config(),
         std::string("--help"), std::string("check --print-options-markdown")}) {
@@ -126,7 +126,7 @@ TEST(Program, StandardOutputThatTakesNothingIsAFailure) {
   }
 }
 
-TEST(Program, AFileDoesNotTakeThePlaceOfAClosedStream) {
+TEST(Program, OpensNoFileInPlaceOfAClosedStream) {
   const test::TemporaryDirectory directory;
   const std::string estimates = directory.path("e.csv"), record = directory.path("r.csv");
   test::record_table_test(record, 6);
@@ -138,7 +138,7 @@ TEST(Program, AFileDoesNotTakeThePlaceOfAClosedStream) {
   EXPECT_EQ(test::read_file(estimates), test::read_file(directory.path("whole.csv")));
 }
 
-TEST(Program, WantOfMemoryIsSaid) {
+TEST(Program, ReportsMissingMemory) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer takes terabytes of addresses";
 #endif
@@ -160,7 +160,7 @@ TEST(Program, WantOfMemoryIsSaid) {
   EXPECT_FALSE(fs::exists(directory.path("o.csv.partial")));
 }
 
-TEST(Program, ASignalLeavesNothingHalfWritten) {
+TEST(Program, LeavesNoIncompleteFileAfterASignal) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE})
     for (const std::string name : {"o.csv", "o.csv.gz", "o.lcmlog"}) {
       const test::TemporaryDirectory directory;
@@ -175,7 +175,7 @@ TEST(Program, ASignalLeavesNothingHalfWritten) {
     }
 }
 
-TEST(Program, LinksInACircleAreSaid) {
+TEST(Program, ReportsLinksInACircle) {
   const test::TemporaryDirectory directory;
   fs::create_symlink(directory.path("b"), directory.path("a"));
   fs::create_symlink(directory.path("a"), directory.path("b"));
@@ -200,7 +200,7 @@ TEST(Program, LinksInACircleAreSaid) {
   }
 }
 
-TEST(Program, ADirectoryAsAStateIsSaid) {
+TEST(Program, ReportsADirectoryAsAState) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv"), state = directory.path("state");
   test::record_table_test(record, 6);

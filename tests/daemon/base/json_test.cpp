@@ -13,7 +13,7 @@
 namespace framewatch::daemon {
 namespace json_test {
 
-TEST(JsonText, IsJsonWhateverTheBytesAre) {
+TEST(JsonText, IsValidForAnyBytes) {
   std::string every;
   for (int i = 0; i < 256; ++i) every += static_cast<char>(i);
   const std::string text = json_text(every);
@@ -23,12 +23,12 @@ TEST(JsonText, IsJsonWhateverTheBytesAre) {
   EXPECT_EQ(json_text("\x7f\xc2\x9b\xff"), "\"\\u007f\\u009b\\ufffd\"");
 }
 
-TEST(JsonList, HasNoNumberThatIsInfiniteOnceItIsRounded) {
+TEST(JsonList, HasNoNumberThatRoundsToInfinity) {
   const double most = std::numeric_limits<double>::max();
   EXPECT_EQ(json_list(std::vector{1.25, most, -most, 1e300}, "{:.4g}"), "[1.25,null,null,1e+300]");
 }
 
-TEST(HtmlText, NothingOpensATagOrEndsAnAttribute) {
+TEST(HtmlText, OpensNoTagAndEndsNoAttribute) {
   EXPECT_EQ(html_text("</td><script>\"&"), "&lt;/td&gt;&lt;script&gt;&quot;&amp;");
 }
 

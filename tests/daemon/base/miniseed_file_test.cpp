@@ -9,7 +9,7 @@
 namespace framewatch::daemon {
 namespace miniseed_file_test {
 
-TEST(MiniseedFile, TimesComeBackToTheMicrosecond) {
+TEST(MiniseedFile, KeepsTimesToTheMicrosecond) {
   constexpr std::int64_t kStart_us = 1'795'478'400'123'457;
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("a.mseed");

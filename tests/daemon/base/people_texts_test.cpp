@@ -24,7 +24,7 @@ std::string in_zone(const char* zone, std::int64_t time_us) {
   return text;
 }
 
-TEST(UtcText, IsReadAsItIsWritten) {
+TEST(UtcText, ReadsBackItsText) {
   EXPECT_EQ(utc_text(kMidnight_us), "2026-11-22T00:00:00Z");
   EXPECT_EQ(utc_text(kMidnight_us + 250'000), "2026-11-22T00:00:00.250Z");
   EXPECT_EQ(utc_text(-1'000'000), "1969-12-31T23:59:59Z");
@@ -37,7 +37,7 @@ TEST(UtcText, IsReadAsItIsWritten) {
     EXPECT_FALSE(read_utc(text)) << text;
 }
 
-TEST(UtcText, OfATimeThatNoFourDigitsHold) {
+TEST(UtcText, ClampsYearsToFourDigits) {
   constexpr std::int64_t kFarthest = std::numeric_limits<std::int64_t>::max();
   EXPECT_EQ(utc_text(kFarthest), "9999-12-31T23:59:59.999Z");
   EXPECT_EQ(utc_text(-kFarthest - 1), "0000-01-01T00:00:00Z");
@@ -45,13 +45,13 @@ TEST(UtcText, OfATimeThatNoFourDigitsHold) {
   EXPECT_EQ(sensor_time_text(kFarthest), "9999-12-31 23:59:59 UTC");
 }
 
-TEST(UtcAndLocalText, HasBothWhereTheyDiffer) {
+TEST(UtcAndLocalText, HasBothIfTheyDiffer) {
   EXPECT_EQ(in_zone("UTC", kEvening_us), "2026-11-21 20:00:00 UTC");
   EXPECT_EQ(in_zone("CET-1", kEvening_us), "2026-11-21 20:00:00 UTC (21:00:00 CET)");
   EXPECT_EQ(in_zone("JST-9", kEvening_us), "2026-11-21 20:00:00 UTC (2026-11-22 05:00:00 JST)");
 }
 
-TEST(TimeLeftText, IsAsExactAsAPersonWants) {
+TEST(TimeLeftText, RoundsToUsefulPrecision) {
   EXPECT_EQ(time_left_text(7.2), "8 s left");
   EXPECT_EQ(time_left_text(0), "0 s left");
   EXPECT_EQ(time_left_text(200), "4 min left");

@@ -12,12 +12,12 @@
 namespace framewatch::daemon {
 namespace printable_test {
 
-TEST(Printable, OrdinaryTextInAnyLanguageStaysAsItIs) {
+TEST(Printable, KeepsOrdinaryTextInAnyLanguage) {
   for (const char* text : {"", "a loose sensor, \"F1\" \\n", "größer als 5 µm/s²", "地震", "🏢"})
     EXPECT_EQ(printable(text), text);
 }
 
-TEST(Printable, WhatActsOnATerminalOrAJournalIsAnEscape) {
+TEST(Printable, EscapesControlCharacters) {
   EXPECT_EQ(printable("a\nb\r\tc"), "a\\nb\\r\\tc");
   EXPECT_EQ(printable("\x1b[2J\x07\x7f"), "\\x1b[2J\\x07\\x7f");
   EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
@@ -28,7 +28,7 @@ TEST(Printable, WhatActsOnATerminalOrAJournalIsAnEscape) {
   EXPECT_EQ(printable("\xe2\x80\xa8\xef\xbb\xbf"), "\\u2028\\ufeff");  // a line's end, a mark
 }
 
-TEST(Printable, BytesThatAreNoUtf8AreEscapes) {
+TEST(Printable, EscapesBytesThatAreNotUtf8) {
   EXPECT_EQ(printable("\xff\xfe"), "\\xff\\xfe");
   EXPECT_EQ(printable("\xc3"), "\\xc3");                    // cut
   EXPECT_EQ(printable("\xc0\x9b"), "\\xc0\\x9b");           // ESC, too long
@@ -38,7 +38,7 @@ TEST(Printable, BytesThatAreNoUtf8AreEscapes) {
   EXPECT_EQ(printable("\xc3\xa9\xa9"), "é\\xa9");
 }
 
-TEST(Printable, IsBoundedAndDoesNotChangeItsOwnText) {
+TEST(Printable, IsBoundedAndIdempotent) {
   EXPECT_EQ(printable("abcdef", 6), "abcdef");
   EXPECT_EQ(printable("abcdefg", 6), "abc...");
   EXPECT_EQ(printable("abc\xc3\xa9\xc3\xa9", 7), "abcé\xc3\xa9");
@@ -51,7 +51,7 @@ TEST(Printable, IsBoundedAndDoesNotChangeItsOwnText) {
   EXPECT_TRUE(std::none_of(once.begin(), once.end(), [](unsigned char c) { return c < 0x20; }));
 }
 
-TEST(Printable, LinesOfOnesOwnStay) {
+TEST(Printable, KeepsLineBreaksOnRequest) {
   const std::string longer(3 * kMaxPrinted, 'x');
   EXPECT_EQ(printable_lines("a\n" + longer), "a\n" + longer);
   EXPECT_EQ(printable_lines("a\n\x1b"
@@ -59,7 +59,7 @@ TEST(Printable, LinesOfOnesOwnStay) {
             "a\n\\x1bb\n");
 }
 
-TEST(Log, NobodyForgesALine) {
+TEST(Log, CannotBeForged) {
   testing::internal::CaptureStderr();
   log(LogLevel::notice,
       "event 1 is acknowledged by me: x\n<0>framewatch: the building falls\x1b[2J");

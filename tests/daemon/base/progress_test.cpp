@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 constexpr int kBytes = 200'000;
 constexpr auto kDrawn = 3500ms;  // after the first 2 s it is drawn every half second
 
-/// A terminal as standard error, until it goes.
+/// Makes standard error a terminal until it is destroyed.
 class Terminal {
  public:
   Terminal() : terminal_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
@@ -52,7 +52,7 @@ class Terminal {
   int terminal_;
 };
 
-TEST(ProgressLine, FollowsWhatIsReadOfFiles) {
+TEST(ProgressLine, FollowsTheBytesReadFromFiles) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("x");
   test::write_file(path, std::string(kBytes, 'x'));
@@ -70,7 +70,7 @@ TEST(ProgressLine, FollowsWhatIsReadOfFiles) {
   EXPECT_NE(text.find(" s left, reading x"), std::string::npos) << text;
 }
 
-TEST(ProgressLine, SaysNoTimeOfWhatAPackedLogHolds) {
+TEST(ProgressLine, PredictsNoTimeForACompressedLog) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("x.zst");
   test::write_file(path, std::string(kBytes, 'x'));

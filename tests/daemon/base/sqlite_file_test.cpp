@@ -14,7 +14,7 @@
 namespace framewatch::daemon {
 namespace sqlite_file_test {
 
-TEST(SqliteFile, AStatementThatFailsFailsTheTransaction) {
+TEST(SqliteFile, AFailedStatementFailsTheTransaction) {
   const test::TemporaryDirectory directory;
   SqliteFile file;
   ASSERT_TRUE(file.open(directory.path("db")));
@@ -25,7 +25,7 @@ TEST(SqliteFile, AStatementThatFailsFailsTheTransaction) {
     EXPECT_FALSE(put.run());
     SqliteStatement other = file.prepare("INSERT INTO a VALUES (2)");
     EXPECT_FALSE(other.run());
-    return true;  // whoever forgets to look is not believed
+    return true;  // commit fails if the error was not read
   }));
   EXPECT_NE(file.error(), "");
   SqliteStatement count = file.prepare("SELECT count(*) FROM a");
@@ -33,7 +33,7 @@ TEST(SqliteFile, AStatementThatFailsFailsTheTransaction) {
   EXPECT_EQ(count.integer(0), 0);
 }
 
-TEST(SqliteFile, AStatementThatTheSchemaHasNotFailsWhateverIsAskedOfIt) {
+TEST(SqliteFile, AnInvalidStatementFailsInEveryCall) {
   const test::TemporaryDirectory directory;
   SqliteFile file;
   ASSERT_TRUE(file.open(directory.path("db")));
@@ -73,7 +73,7 @@ TEST(DamagedDatabase, IsSetAsideWithItsLog) {
   EXPECT_EQ(test::read_file(aside.path), "h.sqlite");
 }
 
-TEST(DamagedDatabase, TheThreeLargestStay) {
+TEST(DamagedDatabase, KeepsTheThreeLargest) {
   const test::TemporaryDirectory directory;
   SetAside aside;
   for (const int bytes : {50, 10, 40, 20, 30}) {

@@ -31,7 +31,7 @@ TEST(SvgAxis, TicksAreRound) {
             (std::vector<std::string>{"0.1", "1", "10", "100", "1000"}));
 }
 
-TEST(SvgAxis, EndsComeFromWhatCanBeDrawn) {
+TEST(SvgAxis, EndsComeFromFiniteValues) {
   const SvgAxis axis = fitted({"x"}, {estimator::kNaN, 2, INFINITY, 4});
   EXPECT_LT(axis.low, 2);
   EXPECT_GT(axis.low, 1.5);
@@ -66,7 +66,7 @@ TEST(SvgPlot, LongLinesKeepTheirExtremesAndStaySmall) {
   EXPECT_NE(svg, without.svg());
 }
 
-TEST(SvgPlot, EmptyAndImpossibleInputDrawsAFrameOnly) {
+TEST(SvgPlot, EmptyAndImpossibleInputDrawsOnlyAFrame) {
   SvgPlot plot("nothing", {"x"}, {"y"});
   plot.add({"a", 0, SvgMark::dots, {estimator::kNaN, 1}, {1, INFINITY}});
   plot.add(SvgBox{1, {}, {}, 0});
@@ -84,7 +84,7 @@ TEST(SvgPlot, TextIsNotMarkup) {
   EXPECT_NE(page.find("<title>&lt;t&gt;</title>"), std::string::npos);
 }
 
-TEST(SvgPlot, PageNeedsNothingFromElsewhere) {
+TEST(SvgPlot, PageLoadsNothing) {
   const std::string page = html_page("t", "");
   for (const char* part : {"http", "src=", "<script", "@import", "url("})
     EXPECT_EQ(page.find(part), std::string::npos) << part;

@@ -9,7 +9,7 @@
 namespace framewatch::daemon {
 namespace toml_document_test {
 
-constexpr int kDeep = 100'000;  // nested as deep, the parser's stack overflows
+constexpr int kDeep = 100'000;  // nested this deep, the parser's stack overflows
 
 std::string key_of(int parts) {
   std::string key = "a";
@@ -17,7 +17,7 @@ std::string key_of(int parts) {
   return key;
 }
 
-/// The one problem of a text, and where it is.
+/// Returns the only problem of a text with its place.
 std::string problem_of(const std::string& text) {
   std::vector<TextProblem> problems;
   EXPECT_FALSE(parse_toml(text, problems));
@@ -37,7 +37,7 @@ TEST(TomlDocument, RefusesKeysThatNestTooDeep) {
   EXPECT_EQ(problem_of(tables).substr(0, 3), "1: ");
 }
 
-TEST(TomlDocument, TakesPointsThatAreNoParts) {
+TEST(TomlDocument, AcceptsPointsOutsideOfKeys) {
   const std::string points(1000, '.');
   std::vector<TextProblem> problems;
   const auto document =
@@ -76,7 +76,7 @@ const Mistake kMistakes[] = {
     {"floor = rigid\n", 1, 9, "a text stands between quotes: \"rigid\""},
 };
 
-TEST(TomlAdvice, IsAPersonsWordForKnownMistakes) {
+TEST(TomlAdvice, ExplainsKnownMistakes) {
   for (const Mistake& m : kMistakes) {
     std::vector<TextProblem> problems;
     EXPECT_FALSE(parse_toml(m.text, problems).has_value()) << m.text;
@@ -88,14 +88,14 @@ TEST(TomlAdvice, IsAPersonsWordForKnownMistakes) {
   }
 }
 
-TEST(TomlAdvice, WhatIsNotKnownIsTheParsers) {
+TEST(TomlAdvice, RepeatsTheParserForUnknownMistakes) {
   int column = 3;
   EXPECT_EQ(toml_advice("leading zeroes are prohibited", "a = 01", column),
             "leading zeroes are prohibited");
   EXPECT_EQ(column, 3);
 }
 
-TEST(TomlAdvice, CurlyQuotesInTextsAndRemarksAreNobodysBusiness) {
+TEST(TomlAdvice, AcceptsCurlyQuotesInTextsAndComments) {
   std::vector<TextProblem> problems;
   EXPECT_TRUE(
       parse_toml("a = \"the \u201ctower\u201d\"  # \u201cso\u201d\n", problems).has_value());

@@ -28,7 +28,7 @@ class MaxSize : public testing::Test {
                           directory_.path("table.toml"));
   }
 
-  /// What a command says to the bomb; it must refuse it in any case.
+  /// Returns the error message of a command about the bomb, which it must refuse.
   std::string said(const std::string& command) {
     const int status = std::system(
         fmt::format("cd {} && {} {} >said 2>&1", directory_.path(""), FRAMEWATCH_PROGRAM, command)
@@ -40,7 +40,7 @@ class MaxSize : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(MaxSize, EveryCommandRefusesWhatUnpacksToTooMuchAndSaysWhatAllowsIt) {
+TEST_F(MaxSize, EveryCommandRefusesTooLargeFilesAndNamesTheOption) {
   for (const char* command :
        {"repair x.lcmlog.zst", "repair x.lcmlog.zst --check",
         "replay table.toml x.lcmlog.zst --out o.csv", "diff x.lcmlog.zst x.lcmlog.zst",

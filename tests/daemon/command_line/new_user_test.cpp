@@ -12,7 +12,7 @@ namespace new_user_test {
 
 using test::ShellResult;
 
-/// What somebody types who follows README.md for the first time.
+/// Runs the commands of a user who follows README.md for the first time.
 class NewUser : public testing::Test {
  protected:
   void SetUp() override {
@@ -20,7 +20,7 @@ class NewUser : public testing::Test {
     test::write_file(directory_.path("record.csv"), example("```\ntime_s"));
   }
 
-  /// The first block of README.md that begins so, without its fences.
+  /// Returns the first block of README.md with this beginning, without its fences.
   static std::string example(const std::string& begin) {
     const std::string readme = test::read_file(FRAMEWATCH_SOURCE_DIR "/README.md");
     const std::size_t at = readme.find(begin), from = readme.find('\n', at) + 1;
@@ -34,7 +34,7 @@ class NewUser : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(NewUser, ARecordOfTwoRowsGivesNoWindowAndTheReason) {
+TEST_F(NewUser, ARecordOfTwoRowsGivesNoWindowWithTheReason) {
   ASSERT_EQ(shell("$F convert record.csv record.lcmlog").status, 0);
   const ShellResult said = shell("$F replay building.toml record.lcmlog --out est.lcmlog");
   EXPECT_EQ(said.status, 0);
@@ -44,7 +44,7 @@ TEST_F(NewUser, ARecordOfTwoRowsGivesNoWindowAndTheReason) {
       << said.err;
 }
 
-TEST_F(NewUser, ABuildingWithoutSourcesIsNotRun) {
+TEST_F(NewUser, RunRefusesABuildingWithoutSources) {
   ASSERT_EQ(shell("sed -i '/^source/d' building.toml").status, 0);
   for (const char* command : {"run", "record"}) {
     const ShellResult said = shell(std::string("timeout 60 $F ") + command + " building.toml");
@@ -57,14 +57,14 @@ TEST_F(NewUser, ABuildingWithoutSourcesIsNotRun) {
   EXPECT_NE(said.find("no message carries base yet"), std::string::npos) << said;
 }
 
-TEST_F(NewUser, RecordingWithoutSensorsEndsWithAWord) {
+TEST_F(NewUser, RecordingWithoutSensorsEndsWithAMessage) {
   const ShellResult said = shell("timeout 60 $F record building.toml --by-name --wait 1");
   EXPECT_EQ(said.status, kFailed);
   EXPECT_NE(said.err.find("no samples for 1 s (--wait): nothing was recorded"), std::string::npos)
       << said.err;
 }
 
-TEST_F(NewUser, ConvertTakesTheMainWindowAndSaysSo) {
+TEST_F(NewUser, ConvertWritesTheMainWindowAndSaysSo) {
   copy("table_two_story.toml");
   copy("scenario_table_two_story.toml");
   ASSERT_EQ(shell("$F simulate scenario_table_two_story.toml --seconds 20 --quiet --out r.csv &&"
@@ -86,7 +86,7 @@ TEST_F(NewUser, ConvertTakesTheMainWindowAndSaysSo) {
   EXPECT_EQ(shell("$F convert est.lcmlog x.csv --channel ESTIMATE").status, kBadInput);
 }
 
-TEST_F(NewUser, CheckKnowsAScenario) {
+TEST_F(NewUser, CheckRecognizesAScenario) {
   copy("table_two_story.toml");
   copy("scenario_table_two_story.toml");
   const ShellResult good = shell("$F check scenario_table_two_story.toml");

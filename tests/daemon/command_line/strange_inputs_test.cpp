@@ -16,7 +16,7 @@
 namespace framewatch::daemon {
 namespace strange_inputs_test {
 
-constexpr int kPatience_s = 60;  // a FIFO that is opened blocks for ever; measured 0.1 s
+constexpr int kPatience_s = 60;  // a FIFO that is opened blocks forever; measured 0.1 s
 constexpr int kTimedOut = 124;   // of timeout(1)
 
 struct Said {
@@ -24,7 +24,7 @@ struct Said {
   std::string text;
 };
 
-/// What stands where a file should, and the words that must name it.
+/// A path that is not a file, and the words that must describe it.
 struct Strange {
   const char* name;
   const char* word;
@@ -59,7 +59,7 @@ class StrangeInputs : public testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::read_file(directory_.path("said"))};
   }
 
-  /// Each command must refuse everything strange that stands at `file`, with the word for it.
+  /// Each command must refuse every strange path at `file` and describe it.
   void expect_refused(const std::string& file, const std::vector<std::string>& commands,
                       bool absent_is_refused = true) {
     for (const Strange& strange : kStrange) {

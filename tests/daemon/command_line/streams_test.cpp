@@ -37,7 +37,7 @@ class Streams : public testing::Test {
   const std::string simulate_ = "$F simulate scenario_table_two_story.toml --quiet --seconds 12 ";
 };
 
-TEST_F(Streams, AChainOfPipesGivesWhatFilesGive) {
+TEST_F(Streams, AChainOfPipesGivesTheSameAsFiles) {
   expect(simulate_ + "--out record.csv");
   expect("$F replay table_two_story.toml record.csv --out by-file.csv --quiet");
   expect("set -o pipefail; " + simulate_ +
@@ -46,7 +46,7 @@ TEST_F(Streams, AChainOfPipesGivesWhatFilesGive) {
   EXPECT_EQ(read("by-pipe.csv"), read("by-file.csv"));
 }
 
-TEST_F(Streams, EventLogsComeThroughPipesToo) {
+TEST_F(Streams, EventLogsPassThroughPipes) {
   expect(simulate_ + "--out record.lcmlog");
   expect("$F convert record.lcmlog by-file.csv");
   expect("cat record.lcmlog | $F convert - - >by-pipe.csv");
@@ -54,7 +54,7 @@ TEST_F(Streams, EventLogsComeThroughPipesToo) {
   EXPECT_EQ(read("by-pipe.csv"), read("by-file.csv"));
 }
 
-TEST_F(Streams, TheSummaryLeavesStandardOutputToTheData) {
+TEST_F(Streams, TheSummaryDoesNotMixWithDataOnStandardOutput) {
   expect(simulate_ + "--out record.csv");
   const ShellResult said = shell("$F replay table_two_story.toml record.csv --out -");
   EXPECT_EQ(said.status, 0);
@@ -66,14 +66,14 @@ TEST_F(Streams, TheSummaryLeavesStandardOutputToTheData) {
       kBadInput);
 }
 
-TEST_F(Streams, ConfigurationsComeThroughPipesWithPathsFromHere) {
+TEST_F(Streams, PipedConfigurationsResolvePathsInTheWorkingDirectory) {
   EXPECT_TRUE(shell("cat table_two_story.toml | $F check -").out.starts_with("/dev/stdin: good"));
   // Its key config names a file in the working directory.
   expect("cat scenario_table_two_story.toml | $F simulate - --quiet --seconds 1 --out x.csv");
   EXPECT_NE(shell("echo nonsense | $F check -").err.find("/dev/stdin:1:"), std::string::npos);
 }
 
-TEST_F(Streams, ReportAndWhatADiskDoesNotTake) {
+TEST_F(Streams, AReportToAFullDiskFails) {
   expect(simulate_ + "--out record.csv");
   expect("$F replay table_two_story.toml record.csv --out est.lcmlog --quiet");
   EXPECT_TRUE(shell("$F report est.lcmlog --out -").out.starts_with("<!doctype html>"));
@@ -82,7 +82,7 @@ TEST_F(Streams, ReportAndWhatADiskDoesNotTake) {
   EXPECT_NE(full.err.find("No space left on device"), std::string::npos) << full.err;
 }
 
-TEST_F(Streams, StandardInputIsOneFile) {
+TEST_F(Streams, StandardInputServesOneFile) {
   EXPECT_EQ(shell("$F replay - -").err,
             "framewatch replay: - is standard input and can be given only once\n");
   EXPECT_NE(shell("head -c 3000 /dev/zero | $F check - --max-size 1").err, "");
@@ -95,7 +95,7 @@ TEST_F(Streams, StandardInputIsOneFile) {
             std::string::npos);
 }
 
-TEST_F(Streams, InterruptedWorkLeavesNothingAndSaysSo) {
+TEST_F(Streams, InterruptedWorkLeavesNoFileAndSaysSo) {
   test::Child work(
       {"/bin/sh", "-c",
        "cd " + directory_.path("") +
@@ -111,7 +111,7 @@ TEST_F(Streams, InterruptedWorkLeavesNothingAndSaysSo) {
   EXPECT_NE(read("said").find("removed x.csv.partial\n"), std::string::npos) << read("said");
 }
 
-TEST_F(Streams, FramesOfARunThatWasCutOffAreKept) {
+TEST_F(Streams, AnInterruptedRunKeepsItsFrames) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   test::write_file(directory_.path("frames.partial"), "(1.0) can0 123#00\n");
   test::Child run({"/bin/sh", "-c",
@@ -128,8 +128,8 @@ TEST_F(Streams, FramesOfARunThatWasCutOffAreKept) {
   EXPECT_EQ(read("frames"), "");
 }
 
-/// On a terminal of script(1).
-TEST_F(Streams, ProgressAndColourAreForTerminals) {
+/// Runs on a terminal of script(1).
+TEST_F(Streams, ProgressAndColorAppearOnlyOnTerminals) {
   const std::string slow = "$F simulate scenario_table_two_story.toml --seconds 6000 --out x.csv";
   const auto on_terminal = [&](const std::string& before, const std::string& line) {
     return shell("type -p script >/dev/null || exit 9; export TERM=xterm " + before +

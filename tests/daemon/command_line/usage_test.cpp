@@ -19,7 +19,7 @@ class Usage : public testing::Test {
  protected:
   ShellResult shell(const std::string& line) { return test::shell(directory_, line); }
 
-  /// The first words of the list that --help prints below a heading.
+  /// Returns the first words of the list that --help prints below a heading.
   std::vector<std::string> listed(const std::string& command, const std::string& heading) {
     std::istringstream lines(shell("$F help " + command).out);
     std::vector<std::string> out;
@@ -33,7 +33,7 @@ class Usage : public testing::Test {
     }
     return out;
   }
-  /// But those of framewatch-fleet.
+  /// Leaves out the commands of framewatch-fleet.
   std::vector<std::string> commands() {
     std::vector<std::string> out = listed("", "Subcommands:");
     std::erase_if(out, [](const std::string& c) { return c == "fleet" || c == "uplink"; });
@@ -43,7 +43,7 @@ class Usage : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(Usage, AMisspeltCommandIsToldWithWhatWasMeant) {
+TEST_F(Usage, SuggestsTheMeantCommand) {
   const ShellResult said = shell("$F chek building.toml");
   EXPECT_EQ(said.status, kBadInput);
   EXPECT_EQ(said.err, "framewatch: there is no command chek: did you mean check?\n");
@@ -56,7 +56,7 @@ TEST_F(Usage, AMisspeltCommandIsToldWithWhatWasMeant) {
   EXPECT_EQ(shell("$F").status, kBadInput);
 }
 
-TEST_F(Usage, EveryMisspeltOptionIsToldBeforeAnythingElse) {
+TEST_F(Usage, ReportsEveryMisspeltOptionFirst) {
   const ShellResult said = shell("$F replay --ot x.csv --jsn b.toml a.csv");
   EXPECT_EQ(said.status, kBadInput);
   EXPECT_EQ(said.err,
@@ -68,17 +68,17 @@ TEST_F(Usage, EveryMisspeltOptionIsToldBeforeAnythingElse) {
             "framewatch: there is no option -json: did you mean --json?\n");
   EXPECT_EQ(shell("$F check --zzz b.toml").err,
             "framewatch: there is no option --zzz: framewatch help check lists them\n");
-  // What follows -- is a name, whatever it looks like.
+  // A word after -- is a name, whatever it looks like.
   EXPECT_NE(shell("$F check -- --jsn").err.find("No such file"), std::string::npos);
 }
 
-TEST_F(Usage, OtherBadUsageNamesTheCommandAndItsHelp) {
+TEST_F(Usage, NamesCommandAndHelpAfterBadUsage) {
   EXPECT_EQ(shell("$F check").err,
             "framewatch check: CONFIG is required\nrun `framewatch help check` for its usage\n");
   EXPECT_EQ(shell("$F demo --seconds no").status, kBadInput);
 }
 
-TEST_F(Usage, HelpOfACommandIsItsHelp) {
+TEST_F(Usage, PrintsTheHelpOfACommand) {
   for (const std::string& command : commands()) {
     const ShellResult help = shell("$F help " + command);
     EXPECT_EQ(help.status, 0) << command;
@@ -90,7 +90,7 @@ TEST_F(Usage, HelpOfACommandIsItsHelp) {
   EXPECT_EQ(shell("$F help chek").status, kBadInput);
 }
 
-TEST_F(Usage, FleetIsAProgramOfItsOwn) {
+TEST_F(Usage, RunsFleetAsASeparateProgram) {
   const auto all = listed("", "Subcommands:");
   EXPECT_EQ(std::count(all.begin(), all.end(), "fleet"), 1);
   const ShellResult alone = shell(
@@ -100,13 +100,13 @@ TEST_F(Usage, FleetIsAProgramOfItsOwn) {
             "framewatch fleet: needs the program framewatch-fleet; install the Debian package "
             "framewatch-fleet\nframewatch uplink: needs the program framewatch-fleet; install the "
             "Debian package framewatch-fleet\n");
-  // Whatever lies beside the program, or in PATH, gets the words that follow.
+  // A program of that name beside the program, or in PATH, gets the remaining words.
   test::write_file(directory_.path("framewatch-fleet"), "#!/bin/sh\necho \"$@\"\n");
   EXPECT_EQ(shell("chmod +x framewatch-fleet; ./framewatch fleet task m 1").out, "task m 1\n");
   EXPECT_EQ(shell("./framewatch uplink b.toml").out, "uplink b.toml\n");
 }
 
-TEST_F(Usage, WhatStandardOutputDoesNotTakeIsAFailure) {
+TEST_F(Usage, FailsIfStandardOutputFails) {
   const std::string table = FRAMEWATCH_SOURCE_DIR "/configs/table_two_story.toml";
   std::vector<std::string> lines{"$F --help",         "$F --version",
                                  "$F help --man",     "$F completion bash",
@@ -137,7 +137,7 @@ TEST_F(Usage, BashCompletesCommandsOptionsAndWords) {
   EXPECT_EQ(completed("framewatch check b"), "b one.toml\n");
 }
 
-TEST_F(Usage, CompletionAndManualHaveEveryCommandAndOption) {
+TEST_F(Usage, CompletionAndManualListEveryCommandAndOption) {
   const std::string bash = shell("$F completion bash").out, zsh = shell("$F completion zsh").out,
                     fish = shell("$F completion fish").out, manual = shell("$F help --man").out;
   ASSERT_GE(commands().size(), 22u);
@@ -166,8 +166,8 @@ TEST_F(Usage, CompletionAndManualHaveEveryCommandAndOption) {
   }
 }
 
-/// With what this machine has of the shells; without it the test above stands alone.
-TEST_F(Usage, TheShellsTakeTheirScripts) {
+/// Uses the shells of this machine; otherwise only the test above applies.
+TEST_F(Usage, ShellsAcceptTheirScripts) {
   for (const std::string check : {"bash -n", "zsh -n", "fish --no-execute"}) {
     const std::string name = check.substr(0, check.find(' '));
     const ShellResult said = shell("type -p " + name + " >/dev/null || exit 0; $F completion " +
@@ -177,7 +177,7 @@ TEST_F(Usage, TheShellsTakeTheirScripts) {
   }
 }
 
-TEST_F(Usage, ManualPagesAreRightForGroff) {
+TEST_F(Usage, ManualPagesPassGroff) {
   for (const std::string& command : commands()) {
     const ShellResult said = shell("type -p groff >/dev/null || exit 0; $F help " + command +
                                    " --man | groff -man -Tutf8 -ww -z");

@@ -18,7 +18,7 @@ BO_ 400 Big: 64 A
  SG_ X_0 : 0|16@1- (0.001,0) [0|0] "" A
 )";
 
-/// kGoodConfig with its LCM source in place of `source`, and `more` at its end.
+/// Returns kGoodConfig with its LCM source replaced by `source`, and `more` at its end.
 std::string problems_of(const std::string& source, const std::string& more,
                         const std::string& dbc = kDbc) {
   const test::TemporaryDirectory directory;
@@ -38,7 +38,7 @@ const std::string kBus = "[[can]]\ninterface = \"can0\"\ndbc = [\"n.dbc\"]\n";
 const std::string kNode = "[[can_node]]\nname = \"N\"\nmessages = [\"Accel\"]\n";
 const std::string kX = R"({ can = "can0", dbc_signal = "Accel.X" })";
 
-TEST(ConfigCan, TellsEveryProblemAtItsPlace) {
+TEST(ConfigCan, ReportsEveryProblemAtItsPlace) {
   const auto expect = [](const std::string& all, const std::string& part) {
     EXPECT_NE(all.find(part), std::string::npos) << part << "\nin\n" << all;
   };
@@ -77,7 +77,7 @@ TEST(ConfigCan, TellsEveryProblemAtItsPlace) {
   expect(problems_of(kX, kBus, "BO_ 384 Accel: 8\n"), "n.dbc:1: expected a length in bytes");
 }
 
-TEST(ConfigCan, AMessageOfTwoNodesIsTold) {
+TEST(ConfigCan, ReportsAMessageOfTwoNodes) {
   const std::string two = kBus + kNode + test::replaced(kNode, "\"N\"", "\"M\"");
   std::string text = test::replaced(test::kGoodConfig, R"({ lcm = "ACCEL", node = 2, axis = "x" })",
                                     R"({ can = "can0", dbc_signal = "Accel.X", can_node = "N" })");

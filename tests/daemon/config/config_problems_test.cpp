@@ -11,7 +11,7 @@
 namespace framewatch::daemon {
 namespace config_problems_test {
 
-/// kGoodConfig with one text replaced, and every problem it then has.
+/// kGoodConfig with one text replaced, and all problems that this causes.
 struct Malformed {
   const char* name;
   const char* what;
@@ -25,7 +25,7 @@ std::ostream& operator<<(std::ostream& out, const Malformed& malformed) {
 
 class ConfigProblems : public testing::TestWithParam<Malformed> {};
 
-TEST_P(ConfigProblems, AreAllToldAtTheirPlaces) {
+TEST_P(ConfigProblems, AreAllReportedAtTheirPlaces) {
   const Malformed& m = GetParam();
   std::vector<ConfigProblem> problems;
   const std::string text = test::replaced(test::kGoodConfig, m.what, m.by);
@@ -208,7 +208,7 @@ const Malformed kMalformed[] = {
 INSTANTIATE_TEST_SUITE_P(Malformed, ConfigProblems, testing::ValuesIn(kMalformed),
                          [](const auto& test_case) { return std::string(test_case.param.name); });
 
-TEST(ConfigFile, NotThereOrADirectoryIsAProblemOfTheFile) {
+TEST(ConfigFile, AMissingFileOrADirectoryIsAProblemOfTheFile) {
   const test::TemporaryDirectory directory;
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(load_config(directory.path("no.toml"), problems));
@@ -220,7 +220,7 @@ TEST(ConfigFile, NotThereOrADirectoryIsAProblemOfTheFile) {
   EXPECT_EQ(problems[0].message, "is a directory, not a file");
 }
 
-TEST(ConfigFile, EmptyTextSaysWhatIsMissing) {
+TEST(ConfigFile, EmptyTextReportsMissingKeys) {
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(parse_config("c.toml", "", problems));
   const std::string all = test::told(problems);

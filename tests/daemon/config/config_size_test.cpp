@@ -15,9 +15,9 @@ namespace framewatch::daemon {
 namespace config_size_test {
 
 // Limits.
-constexpr std::chrono::seconds kToRefuse{20};  // a debug build on a busy machine; it took minutes
+constexpr std::chrono::seconds kToRefuse{20};  // for a debug build on a busy machine
 
-/// A tower of `bays` x `bays`, with a sensor on every frame of every floor.
+/// Returns a tower of `bays` x `bays` with a sensor on every frame of every floor.
 std::string tower(int stories, int bays, const std::string& estimator) {
   std::string x, y;
   for (int f = 0; f <= bays; ++f) {
@@ -44,7 +44,7 @@ struct TooLarge {
   std::string line, part;
 };
 
-TEST(ConfigSize, WhatIsTooLargeIsRefusedWithItsLineBeforeMemoryIsTaken) {
+TEST(ConfigSize, RefusesTooLargeValuesWithTheirLineBeforeAllocating) {
   const TooLarge kTooLarge[] = {
       {"stories", tower(1000, 3, ""), "2:11", "structure.stories: the estimation would take"},
       {"window", tower(2, 1, "rate_hz = 100000\nwindow_s = 3600\nboxplot_windows = 100000\n"),
@@ -78,7 +78,7 @@ TEST(ConfigSize, WhatIsTooLargeIsRefusedWithItsLineBeforeMemoryIsTaken) {
   }
 }
 
-TEST(ConfigSize, ABuildingThatIsTooLargeToBeSimulatedHasNoGap) {
+TEST(ConfigSize, DisablesTheGapForABuildingTooLargeToSimulate) {
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(parse_config("c.toml", tower(100, 3, "") + "[gap]\nmodel = \"m\"\n", problems));
   ASSERT_EQ(problems.size(), 1u) << test::told(problems);
@@ -87,7 +87,7 @@ TEST(ConfigSize, ABuildingThatIsTooLargeToBeSimulatedHasNoGap) {
       << test::told(problems);
 }
 
-TEST(ConfigSize, WhatIsMeasuredInPerformanceIsTaken) {
+TEST(ConfigSize, AcceptsEveryBuildingOfThePerformanceTable) {
   std::vector<ConfigProblem> problems;
   EXPECT_TRUE(parse_config("c.toml", tower(300, 3, ""), problems)) << test::told(problems);
   EXPECT_TRUE(parse_config("c.toml", tower(60, 1, "rate_hz = 1000\n"), problems))

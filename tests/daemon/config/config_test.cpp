@@ -66,7 +66,7 @@ TEST(Config, MiniShakeTableIsAPlaneBuildingWithoutDesign) {
   }
 }
 
-TEST(Config, DigestIsThatOfTheBytes) {
+TEST(Config, DigestCoversTheBytes) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("c.toml");
   test::write_file(path, test::kGoodConfig);
@@ -78,7 +78,7 @@ TEST(Config, DigestIsThatOfTheBytes) {
   EXPECT_EQ(config->sha256, test::good(test::kGoodConfig).sha256);
 }
 
-TEST(Config, PaperVariantHasThePapersHighPassUnlessToldOtherwise) {
+TEST(Config, PaperVariantHasThePapersHighPassByDefault) {
   const auto options = [](const std::string& estimator) {
     return test::good(std::string(test::kGoodConfig) + "[estimator]\n" + estimator)
         .pipeline.options;

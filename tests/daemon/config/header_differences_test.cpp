@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A record whose header says otherwise than the configuration.
+// Tests records whose header contradicts the configuration.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ class HeaderDifferences : public testing::Test {
   drivers::Record record_;
 };
 
-TEST_F(HeaderDifferences, NoneAreSaidWhereTheyAgree) {
+TEST_F(HeaderDifferences, AreEmptyIfHeaderAndConfigurationAgree) {
   EXPECT_TRUE(header_differences(config_, record_).empty());
   header(1).azimuth_deg = 23;
   EXPECT_TRUE(header_differences(config_, record_).empty()) << "azimuths are rounded";
@@ -60,21 +60,23 @@ TEST_F(HeaderDifferences, NoneAreSaidWhereTheyAgree) {
   EXPECT_TRUE(header_differences(config_, record_).empty()) << "no headers";
 }
 
-TEST_F(HeaderDifferences, AnAxisTheOtherWayRoundNeedsAPolarity) {
+TEST_F(HeaderDifferences, ReportAnOppositeAxisWithItsPolarity) {
   header(1).azimuth_deg = 200;
   expect_one(
-      "channel second: the record's header says otherwise: it points to azimuth 200 deg, by the "
-      "configuration to 20: its motion is taken with the wrong sign; polarity = -1 mends it");
+      "channel second: the record's header contradicts the configuration: the sensor points to "
+      "azimuth 200 deg, but the configuration says 20 deg: its motion would have the wrong sign; "
+      "set polarity = -1");
   axis(1).polarity = -1;
   EXPECT_TRUE(header_differences(config_, record_).empty());
   header(1).azimuth_deg = 20;
-  expect_one("polarity = 1 mends it");
+  expect_one("set polarity = 1");
 }
 
-TEST_F(HeaderDifferences, AnotherAzimuthSaysHowMuchIsTakenForWhat) {
+TEST_F(HeaderDifferences, ReportAnotherAzimuthWithTheSharesOfMotion) {
   header(2).azimuth_deg = 170;
   expect_one(
-      "50 % of the motion there are taken for what is there, with 87 % of the motion across");
+      "its values contain 50 % of the motion in the configured direction and 87 % of the motion "
+      "across it");
   axis(2).plan = estimator::PlanPlace{0, 0, -M_PI / 3};
   EXPECT_TRUE(header_differences(config_, record_).empty());
   axis(2).plan.reset();
@@ -82,39 +84,39 @@ TEST_F(HeaderDifferences, AnotherAzimuthSaysHowMuchIsTakenForWhat) {
   EXPECT_TRUE(header_differences(config_, record_).empty());
 }
 
-TEST_F(HeaderDifferences, WithoutTheBuildingsAzimuthTheMostCommonIsIt) {
+TEST_F(HeaderDifferences, UseTheMostCommonAzimuthByDefault) {
   config_.azimuth_y_deg.reset();
   header(3).azimuth_deg = 60;
   expect_one(
-      "channel roof: the record's header says otherwise: it points to azimuth 60 deg, by the "
-      "configuration to 20");
+      "channel roof: the record's header contradicts the configuration: the sensor points to "
+      "azimuth 60 deg, but the configuration says 20 deg");
 }
 
-TEST_F(HeaderDifferences, AVerticalAxisIsNoMotionOfFrames) {
+TEST_F(HeaderDifferences, ReportAVerticalAxis) {
   header(1).azimuth_deg.reset();
   header(1).elevation_deg = 90;
-  expect_one("it measures up, the configuration has it along y");
+  expect_one("the sensor measures up, but the configuration says along y");
 }
 
-TEST_F(HeaderDifferences, AnotherLevelIsSaidWithTheStoryThatAgrees) {
+TEST_F(HeaderDifferences, ReportAnotherLevelWithTheStoryToSet) {
   header(1).place = "4th floor";
-  expect_one("it is on floor 4 (\"4th floor\"), by the configuration on story 1");
-  expect_one("story 3, as the other channels are counted agrees with it");
+  expect_one("the sensor is on floor 4 (\"4th floor\"), but the configuration says story 1");
+  expect_one("set story 3 (counted as for the other channels)");
   header(1).place = "Roof";
-  expect_one("story 3 agrees with it");
+  expect_one("set story 3");
   header(1).place = "Free field";
-  expect_one("use = false agrees with it");
+  expect_one("set use = false");
   header(1).place = "Basement";
-  expect_one("story 0, or use = false agrees with it");
+  expect_one("set story 0, or use = false");
   for (std::size_t i = 0; i < 3; ++i) header(i).place = "";
   EXPECT_TRUE(header_differences(config_, record_).empty());
 }
 
-TEST_F(HeaderDifferences, AScaleOnTopOfTheFilesUnitIsSaid) {
+TEST_F(HeaderDifferences, ReportAScaleBesideTheFilesUnit) {
   axis(0).scale = 0.01;
   expect_one(
-      "its values, cm/s2 in the file, are read as m/s^2: scale = 0.01 makes 0.01 times of "
-      "them; scale = 1 is right");
+      "its values, cm/s2 in the file, are already converted to m/s^2: scale = 0.01 multiplies them "
+      "by 0.01 again; set scale = 1");
   header(0).unit = "";
   EXPECT_TRUE(header_differences(config_, record_).empty());
 }

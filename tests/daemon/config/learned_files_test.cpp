@@ -29,7 +29,7 @@ std::optional<estimator::Baseline> read(const std::string& text, std::string& fi
   return out;
 }
 
-TEST(BaselineFile, ValuesByAmplitudeGoThere) {
+TEST(BaselineFile, KeepsValuesByAmplitude) {
   estimator::Baseline b(static_cast<std::size_t>(table().size()));
   b.value[0] = 2, b.std_error[0] = 0.1;
   b.by_amplitude[0] = {{1e-5, 2.05, 0.125}, {1e-4, 1.9, 0.0625}};
@@ -43,14 +43,14 @@ TEST(BaselineFile, ValuesByAmplitudeGoThere) {
   EXPECT_EQ(baseline_text(*back, table()), baseline_text(b, table()));
 }
 
-TEST(BaselineFile, FilesWithoutAmplitudesAreReadAsBefore) {
+TEST(BaselineFile, ReadsFilesWithoutAmplitudes) {
   std::string problem;
   const auto b = read(with(""), problem);
   ASSERT_TRUE(b) << problem;
   EXPECT_TRUE(b->by_amplitude[0].empty());
 }
 
-TEST(BaselineFile, MalformedAmplitudesAreNamed) {
+TEST(BaselineFile, ReportsMalformedAmplitudes) {
   const std::string good = "value_at_amplitude = [2, 2]\nstd_error_at_amplitude = [0.1, 0.1]\n";
   const std::vector<std::string> wrong{
       "amplitude_m = [1e-5, 1e-4]\n",         // no values

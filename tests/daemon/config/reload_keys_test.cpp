@@ -11,7 +11,7 @@
 namespace framewatch::daemon {
 namespace reload_keys_test {
 
-/// Every section whose keys a running estimation may take, with what [actions] needs.
+/// Every section with keys that a running estimation accepts, and the keys that [actions] needs.
 const std::string kEverySection =
     std::string(test::kGoodConfig) +
     "noise_mps2_per_rthz = 0.5\n[estimator]\n[lcm]\n[watch]\n[gap]\n[history]\ndirectory = \"h\"\n"
@@ -19,7 +19,7 @@ const std::string kEverySection =
     "[fleet]\nbuilding = \"a\"\nhubs = [\"tls://a:1\"]\ncertificate = \"c\"\nkey = \"k\"\n"
     "ca = \"ca\"\n";
 
-/// The settings of a section; null when the test does not know it.
+/// Returns the settings of a section; null if the test does not know it.
 const void* settings_of(const Config& c, std::string_view section) {
   if (section == "estimator") return &c.pipeline.options;
   if (section == "channel") return &c.pipeline.axes.back();
@@ -32,7 +32,7 @@ const void* settings_of(const Config& c, std::string_view section) {
   return nullptr;
 }
 
-/// The text with this key of the section's last table set, whatever it had before.
+/// Returns the text with this key of the section's last table set to a value.
 std::string with(const Option& o, const std::string& value) {
   const std::string key = std::string(o.key) + " = ", heading(find_section(o.section)->heading);
   std::string text = kEverySection;
@@ -42,7 +42,7 @@ std::string with(const Option& o, const std::string& value) {
   return text.insert(at + heading.size() + 1, key + value + "\n");
 }
 
-/// Values that rules between keys ask for.
+/// Returns values that satisfy rules between keys.
 std::string value_for(const Option& o) {
   if (o.key == "webhook") return "\"http://there/\"";
   if (o.key == "hubs") return "[\"tls://there:1\"]";
@@ -68,7 +68,7 @@ TEST(ReloadedConfig, TakesEveryKeyOfItsReloadClassAndNoOther) {
   EXPECT_GT(taken, 25);
 }
 
-TEST(ReloadedConfig, KeepsWhatTakesARestart) {
+TEST(ReloadedConfig, KeepsKeysThatNeedARestart) {
   const Config running = test::good(kEverySection);
   Config other = running;
   other.lcm.url = "udpm://other:1";
@@ -86,7 +86,7 @@ TEST(ReloadedConfig, KeepsWhatTakesARestart) {
   EXPECT_TRUE(next.can.buses.empty());
 }
 
-TEST(ReloadedConfig, TakesWholeSectionsAndWhatFollowsFromThem) {
+TEST(ReloadedConfig, TakesWholeSectionsAndDerivedValues) {
   const Config running = test::good(test::kGoodConfig);
   const Config fresh = test::good(kEverySection);
   const Config next = reloaded(running, fresh);
@@ -98,7 +98,7 @@ TEST(ReloadedConfig, TakesWholeSectionsAndWhatFollowsFromThem) {
   EXPECT_EQ(back.pipeline.options.long_window_s, 0);
 }
 
-/// Classes of the changes between two texts.
+/// Returns the classes of the changes between two texts.
 std::map<std::string, Reach> reaches(const std::string& before, const std::string& after) {
   std::vector<TextProblem> problems;
   std::map<std::string, Reach> out;
@@ -108,18 +108,18 @@ std::map<std::string, Reach> reaches(const std::string& before, const std::strin
   return out;
 }
 
-TEST(ReloadedConfig, ClassesAreThoseOfTheTable) {
+TEST(ReloadedConfig, UsesTheReloadClassesOfTheTable) {
   for (const Option& o : options()) {
     if (!o.reload) continue;
     const std::string path = std::string(o.section) + "." + std::string(o.key);
     const auto found = reaches("", path + " = 1\n");
     ASSERT_EQ(found.size(), 1u) << path;
-    // source = { can = ... } is not a section by its path, and takes a restart as all of source.
+    // source = { can = ... } is not a section by its path. It needs a restart, like all of source.
     EXPECT_EQ(found.begin()->second, *o.reload) << path;
   }
 }
 
-TEST(ReloadedConfig, AnEmptySectionIsAChangeWhereItSwitchesSomethingOn) {
+TEST(ReloadedConfig, AnEmptySectionCountsAsAChangeIfItEnablesAFeature) {
   for (const char* section : {"watch", "gap", "actions"})
     EXPECT_EQ(reaches("", "[" + std::string(section) + "]\n").at(section), Reach::settings);
   for (const char* section : {"history", "estimator", "lcm", "structure.design", "unheard_of"})

@@ -6,7 +6,7 @@
 namespace framewatch::drivers {
 namespace bus_load_test {
 
-TEST(BusLoad, KnowsTheLongestFrames) {
+TEST(BusLoad, ComputesTheLongestFrames) {
   EXPECT_EQ(worst_classical_bits(8, false), 135);
   EXPECT_EQ(worst_classical_bits(8, true), 160);
   EXPECT_EQ(worst_classical_bits(0, false), 55);

@@ -40,7 +40,7 @@ TEST(CanField, ReadsOddWidths) {
   EXPECT_EQ(raw_integer({3, 1, true, true}, data), -1);
 }
 
-TEST(CanField, KnowsWhatFits) {
+TEST(CanField, KnowsWhichValuesFit) {
   EXPECT_TRUE(fits({48, 16, true, false}, 8));
   EXPECT_FALSE(fits({49, 16, true, false}, 8));
   EXPECT_TRUE(fits({55, 16, false, false}, 8));
@@ -49,7 +49,7 @@ TEST(CanField, KnowsWhatFits) {
   EXPECT_FALSE(fits({0, 65, true, false}, 64));
 }
 
-TEST(CanField, GivesBackWhatWasPut) {
+TEST(CanField, ReadsBackWrittenValues) {
   std::mt19937_64 random(7);
   for (int i = 0; i < 20000; ++i) {
     CanField field;
@@ -70,7 +70,7 @@ TEST(CanField, GivesBackWhatWasPut) {
   }
 }
 
-TEST(CanField, FloatsKeepNotANumber) {
+TEST(CanField, KeepsNanInFloats) {
   Data data{};
   const CanField f32{0, 32, true, true, CanValue::float32, 1, 0};
   const CanField f64{71, 64, false, true, CanValue::float64, 1, 0};
@@ -82,7 +82,7 @@ TEST(CanField, FloatsKeepNotANumber) {
   EXPECT_EQ(physical(f32, data), 0.25);
 }
 
-TEST(CanField, ClampsWhatDoesNotFit) {
+TEST(CanField, ClampsValuesThatDoNotFit) {
   Data data{};
   const CanField field{0, 16, true, true, CanValue::integer, 0.001, 0};
   put_physical(field, 1e9, data);

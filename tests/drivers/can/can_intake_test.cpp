@@ -19,7 +19,7 @@ using test::can_example;
 
 class Example : public testing::TestWithParam<const char*> {};
 
-TEST_P(Example, GivesBackTheMotionAtTheRightTimes) {
+TEST_P(Example, ReproducesTheMotionAtTheRightTimes) {
   const daemon::Config config = can_example(GetParam());
   const double unit = std::abs(config.pipeline.axes[0].scale);
   const auto rate = static_cast<int>(config.pipeline.options.rate_hz);
@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, Example,
                                          "j1939_61485", "epson_m_a552", "fd_block", "tower"),
                          [](const auto& param) { return std::string(param.param); });
 
-TEST(CanIntake, LostFramesAreCountedAndShiftNothing) {
+TEST(CanIntake, CountsLostFramesWithoutShiftingOthers) {
   for (const char* name : {"tower", "raw_int16"}) {
     const daemon::Config config = can_example(name);
     Traffic all = test::can_traffic(config, 3000), some;
@@ -70,7 +70,7 @@ TEST(CanIntake, LostFramesAreCountedAndShiftNothing) {
   }
 }
 
-TEST(CanIntake, BadFramesAreCountedAndDisturbNobody) {
+TEST(CanIntake, CountsBadFramesWithoutDisturbingOthers) {
   const daemon::Config config = can_example("tower");
   const Traffic good = test::can_traffic(config, 500);
   Traffic bad;
@@ -130,7 +130,7 @@ TEST(CanIntake, BadFramesAreCountedAndDisturbNobody) {
   EXPECT_EQ(b.buses[0].foreign, foreign);
 }
 
-TEST(CanIntake, AClassicalFrameIsNoFdFrame) {
+TEST(CanIntake, RejectsAClassicalFrameWhereAnFdFrameIsConfigured) {
   const daemon::Config config = can_example("fd_block");
   Traffic t = test::can_traffic(config, 2000);
   for (std::size_t i = 0; i < t.size(); i += 5) {
@@ -178,7 +178,7 @@ TEST(CanIntake, SeesBootUpAndEmergency) {
   EXPECT_EQ(result.buses[0].foreign, 0);
 }
 
-TEST(CanIntake, ErrorFramesTellTheBusState) {
+TEST(CanIntake, ReadsTheBusStateFromErrorFrames) {
   CanBusCounters c;
   CanFrame f;
   f.error = true;

@@ -19,7 +19,7 @@ CanFrame good(const std::string& line) {
   return frame;
 }
 
-TEST(CandumpLine, GivesBackEveryKindOfFrame) {
+TEST(CandumpLine, ReadsBackEveryKindOfFrame) {
   for (const char* line :
        {"(1631416514.717133) can0 0D2#0000FFFF10000000", "(0000000000.000001) vcan10 18FEDC33#",
         "(0000000001.000000) c 7FF#R", "(0000000001.000000) c 7FF#R8",
@@ -38,7 +38,7 @@ TEST(CandumpLine, GivesBackEveryKindOfFrame) {
   EXPECT_EQ(error.id, 0x44u);
 }
 
-TEST(CandumpLine, RefusesWhatIsNone) {
+TEST(CandumpLine, RefusesMalformedLines) {
   for (const char* line : {"",
                            "(",
                            "()",
@@ -69,7 +69,7 @@ TEST(CandumpLine, RefusesWhatIsNone) {
   }
 }
 
-TEST(CanLog, ReadsAndWritesTheRealOneByteForByte) {
+TEST(CanLog, CopiesARealLogByteForByte) {
   const auto path = test::data_path("can_real_vehicle_accel/can_sample.log");
   if (!path) GTEST_SKIP() << "no can_real_vehicle_accel in FRAMEWATCH_DATA";
   const test::TemporaryDirectory directory;
@@ -90,7 +90,7 @@ TEST(CanLog, ReadsAndWritesTheRealOneByteForByte) {
   EXPECT_EQ(test::read_file(directory.path("again.log")), test::read_file(*path));
 }
 
-TEST(CanLog, TellsWhichLinesAreNone) {
+TEST(CanLog, ReportsMalformedLines) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("a.log"),
                    "(1.000000) can0 123#00\nrubbish\n(1.000001) can0 123#0");

@@ -74,7 +74,7 @@ TEST(CanSource, ReceivesEveryKindOfFrameInOrder) {
   EXPECT_EQ(harness.source.dropped(), 0);
 }
 
-TEST(CanSource, SurvivesAPeerThatGoesAwayAndOddPackets) {
+TEST(CanSource, SurvivesALostPeerAndOddPackets) {
   Harness harness;
   ASSERT_TRUE(harness.nodes.write(numbered(1)));
   ASSERT_EQ(::send(harness.nodes.descriptor(), "rubbish", 7, 0), 7);
@@ -105,7 +105,7 @@ TEST(CanSource, StartsNodesThatBoot) {
   EXPECT_EQ(answers[0].data[1], 5);
 }
 
-TEST(CanSource, AsksTheKernelForItsIdsOnly) {
+TEST(CanSource, RequestsOnlyItsIdsFromTheKernel) {
   CanMap map = Harness::one_bus();
   CanNodeMap node;
   node.timing = CanTiming::sync;
@@ -127,7 +127,7 @@ HostClockReading reading_at(std::int64_t true_us, std::int64_t step_us) {
   return {true_us + step_us, 500 + step_us, 1};
 }
 
-TEST(ContinuousStamps, TakeStepsOut) {
+TEST(ContinuousStamps, RemoveClockSteps) {
   for (const std::int64_t step_us : kSteps_us) {
     ContinuousStamps stamps;
     std::int64_t day_us = test::kTrafficStart_us;
@@ -144,7 +144,7 @@ TEST(ContinuousStamps, TakeStepsOut) {
   }
 }
 
-TEST(ContinuousStamps, AStepInALongPauseIsTakenOut) {
+TEST(ContinuousStamps, RemoveAStepWithinALongPause) {
   for (const std::int64_t step_us : kSteps_us) {
     ContinuousStamps stamps;
     std::int64_t day_us = test::kTrafficStart_us;
@@ -162,7 +162,7 @@ TEST(ContinuousStamps, AStepInALongPauseIsTakenOut) {
   }
 }
 
-TEST(ContinuousStamps, ADoubtfulReadingIsNoStep) {
+TEST(ContinuousStamps, IgnoreADoubtfulReading) {
   ContinuousStamps stamps;
   std::int64_t day_us = test::kTrafficStart_us;
   for (int i = 0; i < 100; ++i, day_us += kPeriod_us) {

@@ -57,7 +57,7 @@ TEST(Resampler, KeepsAmplitudeAndPhaseUpToTwentyHertz) {
     }
 }
 
-TEST(Resampler, ALeapOfYearsIsNotWalkedInstantByInstant) {
+TEST(Resampler, SkipsALeapOfYearsAtOnce) {
   Resampler resampler(kGrid_us);
   const double years_us = 5e17;
   int given = 0;
@@ -68,7 +68,7 @@ TEST(Resampler, ALeapOfYearsIsNotWalkedInstantByInstant) {
   EXPECT_LT(given, 250);
 }
 
-TEST(Resampler, FillsOneLostSampleAndNotTwo) {
+TEST(Resampler, FillsOneLostSampleButNotTwo) {
   Resampler resampler(kGrid_us);
   const auto out = resampled(
       3, 20, 5000, [](int k) { return k == 100 || k == 200 || k == 201; }, 400, resampler);
@@ -81,7 +81,7 @@ TEST(Resampler, FillsOneLostSampleAndNotTwo) {
     EXPECT_NEAR(value, wave(3, static_cast<double>(time)), 3e-3);
 }
 
-TEST(Resampler, OvertakenSamplesAreNotLost) {
+TEST(Resampler, KeepsOvertakenSamples) {
   Resampler resampler(kGrid_us), straight(kGrid_us);
   std::map<std::int64_t, double> a, b;
   for (int k = 0; k < 300; ++k) {
@@ -96,7 +96,7 @@ TEST(Resampler, OvertakenSamplesAreNotLost) {
   EXPECT_EQ(a, b);
 }
 
-TEST(Resampler, GoesOnAfterALongSilence) {
+TEST(Resampler, ContinuesAfterALongSilence) {
   Resampler resampler(kGrid_us);
   const auto out = resampled(
       2, 0, 1000, [](int k) { return k >= 500 && k < 5000; }, 6000, resampler);

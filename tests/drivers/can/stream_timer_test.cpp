@@ -81,7 +81,7 @@ TEST(StreamTimer, FollowsAClockThatWrapsAndCountsInItsOwnUnit) {
   EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
 }
 
-TEST(StreamTimer, LossesDuplicatesAndReorderingShiftNothing) {
+TEST(StreamTimer, LossesDuplicatesAndReorderingShiftNoSample) {
   HostClockSteps steps;
   Node node(50, 1000, 0, counter16(), steps);
   std::mt19937 random(17);
@@ -111,7 +111,7 @@ TEST(StreamTimer, LossesDuplicatesAndReorderingShiftNothing) {
   EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
 }
 
-TEST(StreamTimer, AnOutageLeavesOutItsLength) {
+TEST(StreamTimer, AnOutageLeavesAGapOfItsLength) {
   HostClockSteps steps;
   Node node(100, 500, 0, counter16(), steps);
   for (std::int64_t k = 0; k < 12000; ++k)
@@ -123,7 +123,7 @@ TEST(StreamTimer, AnOutageLeavesOutItsLength) {
   EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
 }
 
-TEST(StreamTimer, ARebootIsTheNodesOwn) {
+TEST(StreamTimer, ARebootOfOneNodeLeavesOthersAlone) {
   HostClockSteps steps;
   Node steady(0, 500, 0, counter16(), steps), reboots(0, 500, 2500, counter16(), steps);
   for (std::int64_t k = 0; k < 6000; ++k) {
@@ -151,7 +151,7 @@ TEST(StreamTimer, ARebootIsTheNodesOwn) {
   EXPECT_LT(worst, kAlignment_us);
 }
 
-TEST(StreamTimer, AStepOfTheHostsClockMovesNobody) {
+TEST(StreamTimer, AStepOfTheHostsClockMovesNoStamp) {
   for (const double step_us : {1e6, -1e6}) {
     HostClockSteps steps;
     std::vector<std::unique_ptr<Node>> nodes;
@@ -183,7 +183,7 @@ TEST(StreamTimer, AStepOfTheHostsClockMovesNobody) {
   }
 }
 
-TEST(StreamTimer, WithoutCounterArrivalTellsTheNumber) {
+TEST(StreamTimer, NumbersSamplesByArrivalWithoutACounter) {
   HostClockSteps steps;
   Node node(100, 2000, 0, {CanTiming::period, kPeriod_us, kPeriod_us, 0}, steps);
   for (std::int64_t k = 0; k < 20000; ++k)
@@ -283,7 +283,7 @@ TEST(StreamTimer, ASenderHeldUpForSecondsShiftsNothing) {
   EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
 }
 
-TEST(StreamTimer, ALineBegunLateIsFoundWithoutASharpStep) {
+TEST(StreamTimer, CorrectsALateStartWithoutASharpStep) {
   constexpr double kStep_us = 0.0026 * kPeriod_us;
   for (const CanTiming kind : {CanTiming::period, CanTiming::counter}) {
     // Arrival alone cannot tell a frame more than half a period late from a repeated one.
@@ -301,7 +301,7 @@ TEST(StreamTimer, ALineBegunLateIsFoundWithoutASharpStep) {
   }
 }
 
-TEST(StreamTimer, AnOutageThatEndsWithLateFramesLeavesOutItsLength) {
+TEST(StreamTimer, AnOutageThatEndsWithLateFramesLeavesAGapOfItsLength) {
   HostClockSteps steps;
   Node node(0, 200, 0, counter16(), steps);
   double last = 0;

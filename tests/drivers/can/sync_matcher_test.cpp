@@ -17,7 +17,7 @@ namespace sync_matcher_test {
 
 using test::can_example;
 
-TEST(SyncMatcher, LatchedSamplesAllHaveTheTimeOfTheSync) {
+TEST(SyncMatcher, GivesLatchedSamplesTheTimeOfTheSync) {
   const daemon::Config config = can_example("tower");
   const Result result = run(config.can, test::can_traffic(config, 1000));
   EXPECT_EQ(result.samples.size(), 18u * 1000);
@@ -29,7 +29,7 @@ TEST(SyncMatcher, LatchedSamplesAllHaveTheTimeOfTheSync) {
   EXPECT_EQ(instants.begin()->first, kStart_us + 135 + 500);
 }
 
-TEST(SyncMatcher, AFrameAfterTheNextSyncIsLateAndNotTheNextSample) {
+TEST(SyncMatcher, CountsAFrameAfterTheNextSyncAsLate) {
   const daemon::Config config = can_example("tower");
   Traffic t = test::can_traffic(config, 200);
   // Node 3's frame of instant 100 comes after SYNC 101, before its own frame of instant 101.
@@ -76,7 +76,7 @@ std::map<std::pair<int, std::int64_t>, double> by_period(const Result& result) {
   return out;
 }
 
-TEST(SyncMatcher, LateSyncsThatDoNotCountShiftNothing) {
+TEST(SyncMatcher, LateSyncsWithoutACounterShiftNothing) {
   for (const bool counting_nodes : {true, false}) {
     daemon::Config config = can_example("tower");
     config.can.buses[0].sync_overflow = 0;
@@ -141,7 +141,7 @@ TEST(SyncMatcher, AStarvedSenderLosesNoSample) {
   }
 }
 
-TEST(SyncMatcher, AnOutageThatEndsLateLosesWhatItLost) {
+TEST(SyncMatcher, AnOutageThatEndsLateLosesOnlyItsOwnSamples) {
   constexpr int kInstants = 1000;
   constexpr std::int64_t kLost = 8, kFrame_us = 35;
   const daemon::Config config = can_example("tower");
@@ -169,7 +169,7 @@ TEST(SyncMatcher, AnOutageThatEndsLateLosesWhatItLost) {
   }
 }
 
-TEST(SyncMatcher, TheNodesCountersTellWhichSyncWasLost) {
+TEST(SyncMatcher, FindsTheLostSyncByTheNodesCounters) {
   daemon::Config config = can_example("tower");
   config.can.buses[0].sync_overflow = 0;
   const Traffic good = test::can_traffic(config, 6000);

@@ -73,7 +73,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text.replace(at, what.size(), by);
 }
 
-TEST(Dbc, ReadsWhatItNeeds) {
+TEST(Dbc, ReadsMessagesAndSignals) {
   const Dbc dbc = good(kGood);
   ASSERT_EQ(dbc.messages.size(), 4u);
   const DbcMessage& raw = dbc.messages[0];
@@ -93,14 +93,14 @@ TEST(Dbc, ReadsWhatItNeeds) {
   EXPECT_EQ(multi.find("F")->field.value, CanValue::float32);
 }
 
-TEST(Dbc, TakesByteOrderMarkCarriageReturnsAndLatin1) {
+TEST(Dbc, AcceptsByteOrderMarkCarriageReturnsAndLatin1) {
   std::string text = "\xEF\xBB\xBF";
   for (const char c : replaced(kGood, "\xC2\xB2", "\xB2"))
     text += c == '\n' ? "\r\n" : std::string(1, c);
   EXPECT_EQ(good(text).messages.size(), 4u);
 }
 
-TEST(Dbc, TellsEveryBrokenRuleAtItsLine) {
+TEST(Dbc, ReportsEveryBrokenRuleWithItsLine) {
   const auto contains = [](const std::string& all, const std::string& part) {
     EXPECT_NE(all.find(part), std::string::npos) << part << "\nin\n" << all;
   };

@@ -11,17 +11,17 @@
 namespace framewatch::drivers {
 namespace caught_test {
 
-TEST(TryApart, WhatEndsSurvivesAndChangesNothing) {
+TEST(TryApart, ReportsSurvivalWithoutSideEffects) {
   int changed = 0;
   EXPECT_EQ(try_apart([&] { changed = 1; }, 60), AttemptEnd::survived);
   EXPECT_EQ(changed, 0);
 }
 
-TEST(TryApart, ACrashIsTold) {
+TEST(TryApart, ReportsACrash) {
   EXPECT_EQ(try_apart([] { std::abort(); }, 60), AttemptEnd::crashed);
 }
 
-TEST(TryApart, WhatNeverEndsIsEnded) {
+TEST(TryApart, EndsATaskThatNeverReturns) {
   const auto forever = [] {
     for (volatile bool on = true; on;) continue;
   };
@@ -29,7 +29,7 @@ TEST(TryApart, WhatNeverEndsIsEnded) {
   EXPECT_EQ(try_apart([] { ::pause(); }, 3), AttemptEnd::too_long);
 }
 
-TEST(TryApart, WhatIsThrownStaysThere) {
+TEST(TryApart, ContainsExceptions) {
   EXPECT_EQ(try_apart([] { throw std::bad_alloc(); }, 60), AttemptEnd::survived);
 }
 

@@ -27,7 +27,7 @@ bool comes_true(Condition condition) {
   return condition();
 }
 
-TEST(DurableFile, WhatIsAppendedIsOnTheDiskBeforeItIsClosed) {
+TEST(DurableFile, WritesAppendedBytesBeforeClose) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("log");
   std::string error, expected;
@@ -47,7 +47,7 @@ TEST(DurableFile, WhatIsAppendedIsOnTheDiskBeforeItIsClosed) {
   EXPECT_EQ(directory.names(), std::vector<std::string>{"log"});
 }
 
-TEST(DurableFile, AFullDiskDelaysAndTearsNothing) {
+TEST(DurableFile, AFullDiskDelaysWritesButTearsNone) {
   const test::TemporaryDirectory directory;
   std::string error, expected;
   DurableFile file;
@@ -68,7 +68,7 @@ TEST(DurableFile, AFullDiskDelaysAndTearsNothing) {
   EXPECT_EQ(file.counters().dropped, 0);
 }
 
-TEST(DurableFile, WhatDoesNotFitIsCountedAndWhatWasWrittenStays) {
+TEST(DurableFile, CountsDroppedBytesAndKeepsWrittenOnes) {
   const test::TemporaryDirectory directory;
   std::string error;
   DurableFile file(100);
@@ -87,7 +87,7 @@ TEST(DurableFile, WhatDoesNotFitIsCountedAndWhatWasWrittenStays) {
   EXPECT_EQ(test::read_file(directory.path("log.partial")), "012345678901234567890123456789");
 }
 
-TEST(DurableFile, NeverWritesOverWhatIsThere) {
+TEST(DurableFile, NeverOverwritesAFile) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("log.partial"), "of a crash");
   std::string error;
@@ -98,7 +98,7 @@ TEST(DurableFile, NeverWritesOverWhatIsThere) {
   EXPECT_EQ(test::read_file(directory.path("log.partial")), "of a crash");
 }
 
-TEST(DurableFile, IsMadeWhenThereIsSomethingToWriteAndTheDiskTakesIt) {
+TEST(DurableFile, IsCreatedOnTheFirstWriteThatSucceeds) {
   const test::TemporaryDirectory directory;
   const std::string folder = directory.path("not there yet"), path = folder + "/log";
   DurableFile file;
@@ -114,7 +114,7 @@ TEST(DurableFile, IsMadeWhenThereIsSomethingToWriteAndTheDiskTakesIt) {
   EXPECT_EQ(test::read_file(path), "kept");
 }
 
-TEST(DurableFile, SaysWhyItCannotBeMadeForAsLongAsItCannot) {
+TEST(DurableFile, ReportsWhyItCannotBeCreated) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("none/log");
   DurableFile file;
@@ -130,7 +130,7 @@ TEST(DurableFile, SaysWhyItCannotBeMadeForAsLongAsItCannot) {
   EXPECT_NE(error.find("No such file"), std::string::npos) << error;
 }
 
-TEST(DurableFile, OneThatWasNeverNeededIsNotMade) {
+TEST(DurableFile, IsNotCreatedWithoutAWrite) {
   const test::TemporaryDirectory directory;
   DurableFile file;
   file.open_when_needed([&] { return directory.path("log"); });

@@ -44,7 +44,7 @@ std::vector<std::pair<std::string, std::string>> no_files(const TemporaryDirecto
           {directory.path("none"), "No such file or directory"}};
 }
 
-TEST(InputFile, RefusesAtOnceWhatIsNoFileAndSaysWhat) {
+TEST(InputFile, RefusesOtherThanFilesAtOnceWithTheReason) {
   const TemporaryDirectory directory;
   for (const auto& [path, word] : no_files(directory)) {
     InputFile file;
@@ -65,7 +65,7 @@ TEST(InputFile, RefusesAtOnceWhatIsNoFileAndSaysWhat) {
   }
 }
 
-TEST(InputFile, OnlyWhatHasNoNameIsAbsent) {
+TEST(InputFile, IsAbsentOnlyIfTheNameDoesNotExist) {
   const TemporaryDirectory directory;
   for (const auto& [path, word] : no_files(directory))
     EXPECT_EQ(is_absent(path), path.ends_with("none")) << path;
@@ -74,7 +74,7 @@ TEST(InputFile, OnlyWhatHasNoNameIsAbsent) {
   EXPECT_TRUE(is_absent(directory.path("file") + "/below"));
 }
 
-TEST(InputFile, NobodyRecordsToAFifo) {
+TEST(InputFile, DoesNotOpenAFifoToSeeIfItIsInUse) {
   const TemporaryDirectory directory;
   ASSERT_EQ(::mkfifo(directory.path("log.partial").c_str(), 0600), 0);
   EXPECT_FALSE(DurableFile::in_use(directory.path("log")));  // opening it would wait for a writer
@@ -94,7 +94,7 @@ TEST(InputFile, ReadsAFileThroughALink) {
   EXPECT_EQ(file.read(bytes.data(), 4, 20), 0);
 }
 
-TEST(InputFile, ReadsTheWholeOfAFileOrNothing) {
+TEST(InputFile, ReadsTheWholeFileOrNothing) {
   const TemporaryDirectory directory;
   const std::string text(3'000'000, 'x');
   write_file(directory.path("file"), text);

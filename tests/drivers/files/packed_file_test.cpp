@@ -86,7 +86,7 @@ TEST(UnpackLimit, IsFourThousandTimesTheFileWithin64MiBAnd4GiB) {
   EXPECT_EQ(unpack_limit(INT64_MAX), 7);
 }
 
-TEST(UnpackLimit, HoldsForGzippedTextUnlessMoreIsAllowed) {
+TEST(UnpackLimit, HoldsForGzipUnlessRaised) {
   const TemporaryDirectory directory;
   const std::string path = directory.path("bomb.csv.gz");
   gzip_lines(path, 8 * kMiB);
@@ -100,7 +100,7 @@ TEST(UnpackLimit, HoldsForGzippedTextUnlessMoreIsAllowed) {
   EXPECT_LE(lines, 2 * kMiB);
 }
 
-TEST(UnpackLimit, IsNotForPlainText) {
+TEST(UnpackLimit, DoesNotApplyToPlainText) {
   const TemporaryDirectory directory;
   write_file(directory.path("plain"), std::string(10'000, '\n'));
   const MaxSize asked(100);
@@ -109,7 +109,7 @@ TEST(UnpackLimit, IsNotForPlainText) {
   EXPECT_EQ(lines, 10'000);
 }
 
-TEST(UnpackLimit, HoldsForZstdUnlessMoreIsAllowed) {
+TEST(UnpackLimit, HoldsForZstdUnlessRaised) {
   const TemporaryDirectory directory;
   const std::string path = directory.path("bomb.zst");
   write_file(path, zeros_in_zstd(kBombBytes));
@@ -140,7 +140,7 @@ TEST(UnpackLimit, MemoryForZstdIsBounded) {
   ::close(allowed.file);
 }
 
-TEST(UnpackLimit, OnlyAFileIsPacked) {
+TEST(UnpackLimit, UnpacksOnlyFiles) {
   const TemporaryDirectory directory;
   const std::atomic<bool> stop{false};
   EXPECT_NE(pack_zstd("/dev/zero", directory.path("out"), stop).find("is a device, not a file"),

@@ -29,7 +29,7 @@ bool write_to(PartialFile& file, const std::string& text) {
   return ::write(file.descriptor(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
 }
 
-TEST(PartialFile, HasItsNameWhenItIsWhole) {
+TEST(PartialFile, GetsItsNameWhenComplete) {
   const test::TemporaryDirectory directory;
   PartialFile file;
   ASSERT_TRUE(file.open(directory.path("x"))) << file.error();
@@ -41,7 +41,7 @@ TEST(PartialFile, HasItsNameWhenItIsWhole) {
   EXPECT_FALSE(file.is_open());
 }
 
-TEST(PartialFile, LeavesNothingWhenItIsForgotten) {
+TEST(PartialFile, LeavesNoFileIfNotClosed) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("x"), "before");
   {
@@ -72,7 +72,7 @@ TEST(PartialFile, IsNeverWrittenThroughALink) {
   EXPECT_EQ(test::read_file(victim), kVictim);
 }
 
-TEST(PartialFile, OneThatAKilledProgramLeftIsMadeAnew) {
+TEST(PartialFile, ReplacesTheLeftoverOfAKilledProgram) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("x.partial"), "left behind, and longer than what comes");
   fs::create_hard_link(directory.path("x.partial"), directory.path("other name"));
@@ -83,7 +83,7 @@ TEST(PartialFile, OneThatAKilledProgramLeftIsMadeAnew) {
   EXPECT_EQ(directory.names(), (Names{"other name", "x"}));
 }
 
-TEST(PartialFile, OneThatAKilledProgramLeftCanBeKept) {
+TEST(PartialFile, KeepsTheLeftoverOfAKilledProgramOnRequest) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("x");
   EXPECT_EQ(keep_cut_off(path), "");
@@ -102,7 +102,7 @@ TEST(PartialFile, OneThatAKilledProgramLeftCanBeKept) {
   EXPECT_EQ(keep_cut_off(path), "");
 }
 
-TEST(PartialFile, OneThatIsBeingWrittenIsLeftAlone) {
+TEST(PartialFile, LeavesAFileThatIsBeingWritten) {
   const test::TemporaryDirectory directory;
   PartialFile first, second;
   ASSERT_TRUE(first.open(directory.path("x")));
@@ -113,7 +113,7 @@ TEST(PartialFile, OneThatIsBeingWrittenIsLeftAlone) {
   EXPECT_EQ(test::read_file(directory.path("x")), "first");
 }
 
-TEST(PartialFile, OneThatWasReplacedIsNotRenamed) {
+TEST(PartialFile, DoesNotRenameAReplacedFile) {
   const test::TemporaryDirectory directory;
   PartialFile file;
   ASSERT_TRUE(file.open(directory.path("x")));
@@ -124,7 +124,7 @@ TEST(PartialFile, OneThatWasReplacedIsNotRenamed) {
   EXPECT_EQ(directory.names(), Names{"x.partial"});
 }
 
-TEST(PartialFile, ReplacesFilesOnly) {
+TEST(PartialFile, ReplacesOnlyFiles) {
   const test::TemporaryDirectory directory;
   fs::create_directory(directory.path("folder"));
   ASSERT_EQ(::mkfifo(directory.path("pipe").c_str(), 0600), 0);
@@ -139,7 +139,7 @@ TEST(PartialFile, ReplacesFilesOnly) {
   EXPECT_EQ(directory.names(), (Names{"folder", "pipe", "x.partial"}));
 }
 
-TEST(PartialFile, ThoseOfAProcessThatASignalEndsAreRemoved) {
+TEST(PartialFile, AreRemovedWhenASignalEndsTheProcess) {
   const test::TemporaryDirectory directory;
   PartialFile open, whole;
   ASSERT_TRUE(open.open(directory.path("open")));
@@ -152,7 +152,7 @@ TEST(PartialFile, ThoseOfAProcessThatASignalEndsAreRemoved) {
   EXPECT_EQ(directory.names(), Names{"whole"});
 }
 
-TEST(OwnFile, IsNoLinkAndNoPipe) {
+TEST(OwnFile, RefusesLinksAndPipes) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("victim"), kVictim);
   fs::create_symlink(directory.path("victim"), directory.path("link"));

@@ -77,7 +77,7 @@ class Mat : public testing::Test {
   std::vector<Problem> problems_;
 };
 
-TEST_F(Mat, EveryLevelHasTheSameVectorsAndMatrices) {
+TEST_F(Mat, ReadsTheSameFromEveryFormatLevel) {
   for (const auto level : {MAT_FT_MAT5, MAT_FT_MAT73})
     for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
       SCOPED_TRACE(fmt::format("{:x} {}", static_cast<int>(level), static_cast<int>(compression)));
@@ -103,7 +103,7 @@ TEST_F(Mat, EveryLevelHasTheSameVectorsAndMatrices) {
     }
 }
 
-TEST_F(Mat, RowsAreChannelsWhereTheTimesAreAsLongAsThem) {
+TEST_F(Mat, TakesRowsAsChannelsIfTheirLengthMatchesTheTimes) {
   std::vector<double> across;
   for (std::size_t i = 0; i < kSamples; ++i) {
     across.push_back(values(1)[i]);
@@ -120,7 +120,7 @@ TEST_F(Mat, FieldsOfAStructAreVariables) {
   expect_channels({"base", "roof"});
 }
 
-TEST_F(Mat, StructsBesideOtherVariablesKeepTheirName) {
+TEST_F(Mat, KeepsTheNamesOfStructsBesideOtherVariables) {
   test::MatWriter(path_)
       .add_struct("run", {"t", "base"}, {times(), values(1)})
       .add_column("roof", values(2));
@@ -129,7 +129,7 @@ TEST_F(Mat, StructsBesideOtherVariablesKeepTheirName) {
   expect_channels({"run.base", "roof"});
 }
 
-TEST_F(Mat, TimesInAMatrixAreNamedByTheirColumn) {
+TEST_F(Mat, FindsTheTimesInAMatrixByColumnName) {
   test::MatWriter(path_).add("data", joined(times(), values(1)), kSamples, 2);
   expect_said(read(), "name it with --time, or give the seconds");
   expect_said(read(), "the file holds \"data\" (500 x 2 double)");
@@ -137,13 +137,13 @@ TEST_F(Mat, TimesInAMatrixAreNamedByTheirColumn) {
   expect_channels({"data.2"});
 }
 
-TEST_F(Mat, WithoutTimesTheStepIsDeclared) {
+TEST_F(Mat, NeedsTheStepWithoutTimes) {
   test::MatWriter(path_).add("acc", joined(values(1), values(2)), kSamples, 2);
   options_.step_s = 0.01;
   expect_channels({"acc.1", "acc.2"});
 }
 
-TEST_F(Mat, ColumnsTakesAWholeMatrixOrALineOfIt) {
+TEST_F(Mat, SelectsAMatrixOrOneLineOfItWithColumns) {
   test::MatWriter(path_)
       .add_column("t", times())
       .add("acc", joined(values(1), values(2)), kSamples, 2)
@@ -161,7 +161,7 @@ TEST_F(Mat, ColumnsTakesAWholeMatrixOrALineOfIt) {
   expect_said(read(), "--columns \"none\": there is no such column");
 }
 
-TEST_F(Mat, AUnitIsAskedForUnlessTheTimesAreFramewatchsOwn) {
+TEST_F(Mat, AsksForTheUnitUnlessFramewatchWroteTheFile) {
   options_.unit_mps2.reset();
   test::MatWriter(path_).add_column("base", values(1)).add_column("t", times());
   expect_said(read(), "a MATLAB file does not say its unit: declare it with --unit");
@@ -169,14 +169,14 @@ TEST_F(Mat, AUnitIsAskedForUnlessTheTimesAreFramewatchsOwn) {
   expect_channels({"base"}, 1);
 }
 
-TEST_F(Mat, TimesThatAreNoSecondsAreAskedFor) {
+TEST_F(Mat, AsksForTheUnitOfTimesThatCannotBeSeconds) {
   test::MatWriter(path_).add_column("t", times(10)).add_column("a", values(1));
   expect_said(read(), "declare it with --time-unit");
   options_.time_unit_s = 1e-3;
   expect_channels({"a"});
 }
 
-TEST_F(Mat, SeveralTimesAndSquaresAreAsked) {
+TEST_F(Mat, AsksAboutSeveralTimesAndSquareMatrices) {
   test::MatWriter(path_)
       .add_column("t", times())
       .add_column("time", times())
@@ -191,7 +191,7 @@ TEST_F(Mat, SeveralTimesAndSquaresAreAsked) {
   expect_said(read(), "\"a\": 2 x 2 double: its rows or its columns can be the channels");
 }
 
-TEST_F(Mat, WhatIsNoRealNumberIsSaid) {
+TEST_F(Mat, ReportsVariablesThatAreNotRealNumbers) {
   test::MatWriter(path_)
       .add_column("t", times())
       .add_column("a", values(1))
@@ -206,7 +206,7 @@ TEST_F(Mat, WhatIsNoRealNumberIsSaid) {
   expect_said(read(), "\"z\": 500 x 1 complex double cannot be a channel or the times");
 }
 
-TEST_F(Mat, EveryKindOfNumberIsReadAndLogicalsAreNone) {
+TEST_F(Mat, ReadsEveryNumberTypeButNoLogicals) {
   const std::vector<double> wanted = {1, 2, 3};
   test::MatWriter(path_)
       .add_column("t", {0, 0.01, 0.02})
@@ -228,7 +228,7 @@ TEST_F(Mat, EveryKindOfNumberIsReadAndLogicalsAreNone) {
   expect_said(record, "\"on\": 3 x 1 logical, left out");
 }
 
-TEST_F(Mat, NanIsAMissingSampleAndInfinityAnError) {
+TEST_F(Mat, TakesNanAsMissingAndRefusesInfinity) {
   std::vector<double> a = values(1);
   a[7] = std::numeric_limits<double>::quiet_NaN();
   test::MatWriter(path_).add_column("t", times()).add_column("a", a);
@@ -241,7 +241,7 @@ TEST_F(Mat, NanIsAMissingSampleAndInfinityAnError) {
   expect_said(read(), "\"a\": sample 8 is infinite");
 }
 
-TEST_F(Mat, ACutOrDamagedFileIsRefusedWhole) {
+TEST_F(Mat, RefusesATruncatedOrDamagedFile) {
   for (const auto level : {MAT_FT_MAT5, MAT_FT_MAT73}) {
     std::remove(path_.c_str());
     test::MatWriter(path_, level, MAT_COMPRESSION_ZLIB)
@@ -257,7 +257,7 @@ TEST_F(Mat, ACutOrDamagedFileIsRefusedWhole) {
   }
 }
 
-TEST_F(Mat, ASizeThatTheFileCannotHoldIsRefusedBeforeMemoryIsTaken) {
+TEST_F(Mat, RefusesAnImpossibleSizeBeforeAllocating) {
   test::MatWriter(path_).add_column("t", times()).add_column("a", values(1));
   std::string bytes = test::read_file(path_);
   // The dimensions of "a", as int32: 500 x 1.
@@ -269,7 +269,7 @@ TEST_F(Mat, ASizeThatTheFileCannotHoldIsRefusedBeforeMemoryIsTaken) {
   EXPECT_FALSE(read());
 }
 
-TEST_F(Mat, ColumnsThatAreMeantWithoutTheirUnitMustBeAsLongAsTheTimes) {
+TEST_F(Mat, RefusesColumnsWithoutUnitThatDifferInLengthFromTheTimes) {
   std::vector<double> time_ms = times();
   for (double& time : time_ms) time *= 1000;
   test::MatWriter(path_).add_column("time_ms", time_ms).add_column("a", {1, 2, 3});
@@ -278,7 +278,7 @@ TEST_F(Mat, ColumnsThatAreMeantWithoutTheirUnitMustBeAsLongAsTheTimes) {
   expect_said(read(), "\"a\" has 3 samples, \"time_ms\" has 500");
 }
 
-TEST_F(Mat, AFileThatWantsOthersOpenedIsRefused) {
+TEST_F(Mat, RefusesAFileThatRefersToOthers) {
   const auto made = [&](const auto& add) {
     std::remove(path_.c_str());
     test::MatWriter(path_, MAT_FT_MAT73).add_column("t", times()).add_column("a", values(1));
@@ -303,7 +303,7 @@ TEST_F(Mat, AFileThatWantsOthersOpenedIsRefused) {
   expect_said({}, "refers to other files, which are never opened");
 }
 
-TEST_F(Mat, AFormatThatIsDeclaredIsNotGuessed) {
+TEST_F(Mat, DoesNotGuessADeclaredFormat) {
   options_.format = RecordFormat::mat;
   test::write_file(path_, "t,a\n0,1\n0.01,2\n");
   expect_said(read(), "is not a MATLAB file of level 5 or 7.3");

@@ -75,7 +75,7 @@ TEST_F(RecordFile, ReadsCsv) {
   EXPECT_EQ(record->notes.size(), 2U);
 }
 
-TEST_F(RecordFile, LeavesOutALastRowThatMayBeCutOff) {
+TEST_F(RecordFile, LeavesOutALastRowThatMayBeTruncated) {
   const auto record = read("time_s,a\n0,1\n0.5,2\n1,-12.5");
   ASSERT_TRUE(record);
   EXPECT_EQ(record->time_s, (std::vector<double>{0, 0.5}));
@@ -149,7 +149,7 @@ TEST_F(RecordFile, ReportsEveryProblemButAtMostTwenty) {
   EXPECT_EQ(problems_.size(), 21U);
 }
 
-TEST_F(RecordFile, ReadsAt2InTheVariantsOfTheYears) {
+TEST_F(RecordFile, ReadsEveryVariantOfAt2) {
   const std::string head = "PEER NGA\nEVENT, 180\nACCELERATION TIME SERIES IN UNITS OF G\n";
   for (const std::string counts : {"NPTS=   7, DT=   .0050 SEC,", "NPTS= 7, DT= 0.005 SEC",
                                    "   7    0.0050    NPTS, DT", "NPTS=7 DT=.005"}) {
@@ -252,7 +252,7 @@ TEST_F(RecordFile, RefusesMalformedXsens) {
   expect_refused("PacketCounter,SampleTimeFine,Acc_X,Acc_X,Acc_Y,Acc_Z\n", 1, "twice");
 }
 
-TEST_F(RecordFile, RefusesWhatCannotBeRead) {
+TEST_F(RecordFile, RefusesUnreadableFiles) {
   EXPECT_FALSE(read_record(directory_.path("none.csv"), {}, problems_));
   EXPECT_NE(problems_.at(0).message.find("cannot be opened"), std::string::npos);
   problems_.clear();
@@ -260,7 +260,7 @@ TEST_F(RecordFile, RefusesWhatCannotBeRead) {
   EXPECT_EQ(problems_.at(0).message, "cannot be opened: is a directory, not a file");
 }
 
-TEST_F(RecordFile, RefusesCutAndDamagedGzip) {
+TEST_F(RecordFile, RefusesTruncatedAndDamagedGzip) {
   FRAMEWATCH_DATA_OR_SKIP(path, "practice/case-004/record_1.csv.gz");
   const std::string whole = test::read_file(path);
   ASSERT_TRUE(read(whole));
@@ -281,7 +281,7 @@ struct GroundMotion {
   double rate_hz;
 };
 
-TEST_F(RecordFile, ReadsTheGroundMotionsAsTheirProvenanceSays) {
+TEST_F(RecordFile, ReadsTheGroundMotionsWithTheirKnownPeaks) {
   const std::vector<GroundMotion> motions = {
       {"elcentro_NS.dat", kG, {}, 2688, 0.34874, 5e-6, 50},
       {"elcentro_EW.dat", kG, {}, 2674, 0.2141, 5e-5, 50},

@@ -65,7 +65,7 @@ class Table : public testing::Test {
   std::vector<Problem> problems_;
 };
 
-TEST_F(Table, IsReadWithTheSeparatorsAndQuotesOfSpreadsheets) {
+TEST_F(Table, ReadsTheSeparatorsAndQuotesOfSpreadsheets) {
   for (const char* text : {
            "Time,a [m/s2]\n0,0.5\n0.01,-1\n",
            "Time;a [m/s^2]\r\n0;0.5\r\n0.01;-1\r\n",
@@ -89,7 +89,7 @@ TEST_F(Table, IsReadWithTheSeparatorsAndQuotesOfSpreadsheets) {
   expect_read("Time;a [mm/s2]\n0;0,5\n0,01;-1\n", 0.001);
 }
 
-TEST_F(Table, KeepsOrderAndMissingValuesAndSaysWhatItLeavesOut) {
+TEST_F(Table, KeepsOrderAndMissingValuesAndReportsLeftOutColumns) {
   expect_refused("Time,\"b, north [g]\"\n0,1\n0.01,1\n", 1, {"b, north", "must not contain"});
   options_.columns = {"c", "a"};
   const auto two = read(
@@ -104,7 +104,7 @@ TEST_F(Table, KeepsOrderAndMissingValuesAndSaysWhatItLeavesOut) {
   EXPECT_NE(notes(*two).find("a: 2 of 3 samples have no value"), std::string::npos);
 }
 
-TEST_F(Table, AsksForTheUnitThatNobodySaid) {
+TEST_F(Table, AsksForAMissingUnit) {
   expect_refused("Time,a\n0,1\n0.01,2\n", 1, {"\"a\"", "--unit"});
   options_.unit_mps2 = kG;
   expect_read("Time,a\n0,0.5\n0.01,-1\n", kG);
@@ -114,7 +114,7 @@ TEST_F(Table, AsksForTheUnitThatNobodySaid) {
   expect_refused("Time [h],a [g]\n0,1\n0.01,2\n", 1, {"\"h\"", "s, ms, us or ns"});
 }
 
-TEST_F(Table, AsksWhichColumnIsTheTimeWhenSeveralAreOrNoneIs) {
+TEST_F(Table, AsksForTheTimeColumnIfItIsNotUnique) {
   expect_refused("Date;Time;a [g]\n0;0;1\n1;1;1\n", 1, {"\"Date\", \"Time\"", "--time"});
   expect_refused("Time 1;a [g];Time;b [g];t\n0;1;0;1;0\n1;1;1;1;1\n", 1, {"\"Time\", \"t\""});
   options_.time_column = "t";
@@ -188,7 +188,7 @@ TEST_F(Table, ReadsTimeStampsWithTheirZone) {
   expect_refused("Time,a [g]\n2026-11-21T17:00:00Z,1\n5,1\n", 3, {"\"5\""});
 }
 
-TEST_F(Table, NeverInterleavesWhatCanBeColumns) {
+TEST_F(Table, NeverInterleavesPossibleColumns) {
   const std::string text = "0.00 1 2\n0.01 3 4\n0.02 5 6\n";
   options_.unit_mps2 = 1;
   options_.step_s = 0.01;
@@ -207,7 +207,7 @@ TEST_F(Table, NeverInterleavesWhatCanBeColumns) {
   EXPECT_EQ(rows->accel_mps2[0].size(), 9U);
 }
 
-TEST_F(Table, GivesNamesThatTheFileDoesNotHave) {
+TEST_F(Table, NamesUnnamedColumns) {
   options_.unit_mps2 = 1;
   options_.names = {"base", "roof"};
   options_.format = RecordFormat::columns;

@@ -70,7 +70,7 @@ TEST(ChannelTable, RefusesEveryHostileLengthAndEveryPrefix) {
   EXPECT_FALSE(decode_channel_table(foreign.data(), foreign.size()));
 }
 
-TEST(AccelIntake, GivesTheAxesThatAreConfigured) {
+TEST(AccelIntake, DeliversTheConfiguredAxes) {
   Fixture f({{"x1", "ACCEL", 1, 0}, {"z1", "ACCEL", 1, 2}});
   EXPECT_EQ(f.send_accel(7), IntakeResult::samples);
   ASSERT_EQ(f.samples.size(), 2u);
@@ -110,7 +110,7 @@ TEST(AccelIntake, CountsLossesPerNode) {
   EXPECT_EQ(f.intake.lost(), 3);
 }
 
-TEST(AccelIntake, WhatWasSentWhileTheProgramWasAwayIsNoTroubleOfTheNetwork) {
+TEST(AccelIntake, CountsSamplesSentDuringARestartApartFromNetworkLoss) {
   Fixture f({{"one", "ACCEL", 1, 0}});
   for (std::int64_t i = 0; i < 10; ++i) (void)f.send_accel(i);
   f.intake.came_up();
@@ -126,7 +126,7 @@ TEST(AccelIntake, TableInTheStreamBindsByName) {
   EXPECT_EQ(f.send_accel(2, 2), IntakeResult::samples);
 }
 
-TEST(AccelIntake, NoBytesAreTooBad) {
+TEST(AccelIntake, SurvivesAnyBytes) {
   Fixture f({{"one", "ACCEL", 1, 0}});
   std::mt19937 random(7);
   std::uniform_int_distribution<int> byte(0, 255);

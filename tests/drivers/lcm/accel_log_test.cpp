@@ -34,7 +34,7 @@ class AccelLog : public testing::Test {
   std::vector<Problem> problems_;
 };
 
-TEST_F(AccelLog, GivesBackTheRecordItWasMadeOf) {
+TEST_F(AccelLog, ReadsBackItsRecord) {
   Record record{{"F1", "F2", "G"}, {}, {{}, {}, {}}, 100, {}, {}, {}};
   for (int i = 0; i < 250; ++i) {
     record.time_s.push_back(i / 100.0);
@@ -59,7 +59,7 @@ TEST_F(AccelLog, GivesBackTheRecordItWasMadeOf) {
   EXPECT_EQ(back->accel_mps2[2], record.accel_mps2[2]);
 }
 
-TEST_F(AccelLog, SortsAndNotesWhatALiveLogHolds) {
+TEST_F(AccelLog, SortsALiveLogAndNotesItsIrregularities) {
   write_samples({{0, 0, 1},
                  {0, 1, 10},
                  {20000, 0, 3},
@@ -79,7 +79,7 @@ TEST_F(AccelLog, SortsAndNotesWhatALiveLogHolds) {
   EXPECT_EQ(record->notes.size(), 3U);
 }
 
-TEST_F(AccelLog, KeepsANodeThatWasSilentMostOfTheTime) {
+TEST_F(AccelLog, KeepsAMostlySilentNode) {
   std::vector<std::tuple<std::int64_t, std::int32_t, double>> samples;
   for (int i = 0; i < 100; ++i) samples.push_back({i * 10000, 7, i});
   samples.push_back({30000, 3, 0.5});

@@ -34,7 +34,7 @@ TEST(AccelMessages, PutsEveryValueOnItsNodeAndAxis) {
   EXPECT_EQ(second->accel_abs_mps2[1], 3.5);
 }
 
-TEST(AccelMessages, ALossIsAJumpOfTheSequence) {
+TEST(AccelMessages, SkipsASequenceNumberForALoss) {
   AccelMessages messages = three_channels();
   EXPECT_EQ(messages.samples(0, {1, 1, 1}).size(), 2u);
   EXPECT_EQ(messages.samples(10, {1, kLost, kLost}).size(), 1u);

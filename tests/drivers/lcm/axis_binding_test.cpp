@@ -40,7 +40,7 @@ bool never(const std::string&, std::int32_t) {
 
 using Axes = std::vector<std::size_t>;
 
-TEST(AxisBinding, AConfiguredAddressIsAboveEveryTable) {
+TEST(AxisBinding, AConfiguredAddressOverridesEveryTable) {
   AxisBinding binding({{"a", "ACCEL", 1, 0}, {"b", "ACCEL", 2, 0}});
   EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"b", 1, 0}, {"a", 2, 0}}})), (Axes{0, 1}));
   EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
@@ -50,7 +50,7 @@ TEST(AxisBinding, AConfiguredAddressIsAboveEveryTable) {
   EXPECT_FALSE(binding.carries("OTHER"));
 }
 
-TEST(AxisBinding, ATableThatSaysWhatTheConfigurationSaysContradictsNothing) {
+TEST(AxisBinding, AMatchingTableIsNoContradiction) {
   AxisBinding binding({{"a", "ACCEL", 1, 0}, {"b", "ACCEL", 2, 0}, {"c", "", -1, 0}});
   const ChannelTable table{100, {{"a", 1, 0}, {"b", 2, 0}, {"c", 3, 0}, {"theirs", 3, 1}}};
   EXPECT_TRUE(binding.apply("ACCEL", table, never).empty());
@@ -76,7 +76,7 @@ TEST(AxisBinding, AConfiguredAddressIsNotGivenToAnotherChannel) {
   EXPECT_EQ(binding.unbound(), Names{"file only"});
 }
 
-TEST(AxisBinding, WhatATableBoundStaysWhileItsSamplesCome) {
+TEST(AxisBinding, ABindingStaysWhileItsSamplesCome) {
   AxisBinding binding({{"a", "", -1, 0}, {"b", "", -1, 0}});
   EXPECT_TRUE(binding.apply("ACCEL", {100, {{"a", 1, 0}, {"b", 2, 0}}}, never).empty());
   EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"a", 2, 0}, {"b", 1, 0}}}, never)),
@@ -98,7 +98,7 @@ TEST(AxisBinding, AMoveToATakenAddressChangesNothing) {
   EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), 1);
 }
 
-TEST(AxisBinding, FileOnlyAxesListenOnAccelAndBindByName) {
+TEST(AxisBinding, AxesWithoutASourceBindByNameOnAccel) {
   AxisBinding binding({{"a", "", -1, 0}});
   EXPECT_EQ(binding.streams(), Names{"ACCEL"});
   EXPECT_FALSE(binding.carries("RECORD"));
@@ -107,7 +107,7 @@ TEST(AxisBinding, FileOnlyAxesListenOnAccelAndBindByName) {
   EXPECT_EQ(axis_at(binding, "RECORD", 7, 2), 0);
 }
 
-TEST(AxisBinding, TablesOfOthersChangeNothing) {
+TEST(AxisBinding, ForeignTablesChangeNothing) {
   AxisBinding binding({{"a", "ACCEL", 1, 0}});
   binding.apply("ELSEWHERE", {0, {{"x", 1, 0}, {"y", 1, 1}}});
   EXPECT_FALSE(binding.carries("ELSEWHERE"));
@@ -120,14 +120,14 @@ TEST(AxisBinding, ImpossibleAxisInATableIsIgnored) {
   EXPECT_EQ(binding.unbound(), (Names{"a", "b"}));
 }
 
-TEST(AxisBinding, NameInTwoPlacesBindsOnce) {
+TEST(AxisBinding, ANameInTwoPlacesBindsOnce) {
   AxisBinding binding({{"a", "", -1, 0}});
   EXPECT_EQ(axes_of(binding.apply("ACCEL", {0, {{"a", 1, 0}, {"a", 2, 0}}})), Axes{0});
   EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
   EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), kNone);
 }
 
-TEST(AxisBinding, ANewTableMovesWhatIsSilent) {
+TEST(AxisBinding, ANewTableMovesASilentChannel) {
   AxisBinding binding({{"a", "", -1, 0}});
   binding.apply("ACCEL", {0, {{"a", 1, 0}}});
   binding.apply("ACCEL", {0, {{"a", 2, 1}}});

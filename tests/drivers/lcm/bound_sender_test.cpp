@@ -8,12 +8,12 @@ namespace bound_sender_test {
 
 constexpr LcmSender kNode{0x7F000001, 40000}, kNodeAnew{0x7F000001, 40001}, kTwin{0x0A000002, 9};
 
-TEST(LcmSender, IsShownAsAddressAndPort) {
+TEST(LcmSender, IsPrintedAsAddressAndPort) {
   EXPECT_EQ(to_text(kTwin), "10.0.0.2:9");
   EXPECT_EQ(to_text({0xFFFFFFFF, 65535}), "255.255.255.255:65535");
 }
 
-TEST(BoundSender, TheFirstGoesOn) {
+TEST(BoundSender, KeepsTheFirstSender) {
   BoundSender sender;
   for (std::int64_t t = 0; t < 10'000'000; t += 10'000) {
     EXPECT_TRUE(sender.takes(kNode, t));
@@ -26,7 +26,7 @@ TEST(BoundSender, TheFirstGoesOn) {
   EXPECT_EQ(sender.other(), kTwin);
 }
 
-TEST(BoundSender, ANodeThatBeginsAnewTakesOverWithoutAContest) {
+TEST(BoundSender, ARestartedNodeTakesOverWithoutAContest) {
   BoundSender sender;
   EXPECT_TRUE(sender.takes(kNode, 0));
   std::int64_t left_out = 0;
@@ -37,13 +37,13 @@ TEST(BoundSender, ANodeThatBeginsAnewTakesOverWithoutAContest) {
   EXPECT_FALSE(sender.takes(kNode, 4'000'000));
 }
 
-TEST(BoundSender, WhereNobodyTellsEveryMessageIsTaken) {
+TEST(BoundSender, TakesEveryMessageWithoutAnAddress) {
   BoundSender sender;
   for (std::int64_t t = 0; t < 100; ++t) EXPECT_TRUE(sender.takes({}, t));
   EXPECT_EQ(sender.others + sender.contests, 0);
 }
 
-TEST(BoundSender, AClockSetBackLocksNobodyOut) {
+TEST(BoundSender, AcceptsASenderAgainAfterAClockIsSetBack) {
   BoundSender sender;
   EXPECT_TRUE(sender.takes(kNode, 3'600'000'000));
   EXPECT_FALSE(sender.takes(kNodeAnew, 0));

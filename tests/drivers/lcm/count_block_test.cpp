@@ -21,7 +21,7 @@ estimator::AccelSample sample(std::int64_t time_us, int axis, double accel) {
   return {estimator::from_microseconds(time_us), axis, accel};
 }
 
-TEST(CountBlock, HoldsWhatWasAddedInItsOrder) {
+TEST(CountBlock, HoldsSamplesInTheOrderAdded) {
   CountBlock block(kStep);
   block.add(sample(1'000'000, 3, 9.806651));
   block.add(sample(999'000, 0, -0.25));  // from a late node
@@ -37,7 +37,7 @@ TEST(CountBlock, HoldsWhatWasAddedInItsOrder) {
   EXPECT_EQ(block_read->count, (std::vector<std::int32_t>{9'806'651, -250'000, kNoCount}));
 }
 
-TEST(CountBlock, ValuesBeyondTheRangeAreNotTakenForOthers) {
+TEST(CountBlock, DoesNotWrapValuesBeyondTheRange) {
   EXPECT_EQ(count_of(1e9, kStep), kMaxCount);
   EXPECT_EQ(count_of(-1e9, kStep), -kMaxCount);
   EXPECT_EQ(count_of(std::numeric_limits<double>::infinity(), kStep), kMaxCount);
@@ -45,13 +45,13 @@ TEST(CountBlock, ValuesBeyondTheRangeAreNotTakenForOthers) {
   EXPECT_EQ(count_of(estimator::kNaN, kStep), kNoCount);
 }
 
-TEST(CountBlock, TheStepOfAConverterKeepsItsIntegers) {
+TEST(CountBlock, KeepsTheIntegersOfAConverterStep) {
   constexpr double kConverter = 3.9e-6 * 9.80665;
   for (std::int32_t count = -524288; count < 524288; count += 997)
     EXPECT_EQ(count_of(count * kConverter, kConverter), count);
 }
 
-TEST(CountBlock, DoesNotTakeATimeThatItCannotSay) {
+TEST(CountBlock, RefusesATimeItCannotEncode) {
   CountBlock block(kStep);
   EXPECT_TRUE(block.takes(sample(INT64_MIN, 0, 0)));
   block.add(sample(0, 0, 0));
@@ -60,7 +60,7 @@ TEST(CountBlock, DoesNotTakeATimeThatItCannotSay) {
   EXPECT_FALSE(block.takes(sample(INT64_MIN, 0, 0)));
 }
 
-TEST(CountBlock, DamagedMessagesAreNone) {
+TEST(CountBlock, RefusesDamagedMessages) {
   CountBlock block(kStep);
   block.add(sample(0, 0, 1));
   block.add(sample(0, 1, 1));

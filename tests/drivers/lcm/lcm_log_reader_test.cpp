@@ -21,8 +21,8 @@ using test::write_file;
 constexpr double kHourLogLimit_s = 1.0;  // measured 0.2 s in Release, 4 nodes at 100 Hz
 
 struct Reading {
-  std::vector<int> intact;  ///< which of the ten came back with their own payload
-  int other = 0;            ///< events that are none of the ten
+  std::vector<int> intact;  ///< which of the ten came back with their payload
+  int other = 0;            ///< events that are not among the ten
   std::int64_t damaged_bytes = 0;
   std::vector<LogDamage> damage;
   LogRead last = LogRead::error;  ///< last result before end
@@ -93,7 +93,7 @@ TEST(LcmLogReader, EmptyFileIsAtItsEnd) {
   EXPECT_TRUE(read_bytes("").intact.empty());
 }
 
-TEST(LcmLogReader, SaysWhyAFileCannotBeOpened) {
+TEST(LcmLogReader, ReportsWhyAFileCannotBeOpened) {
   LcmLogReader reader;
   EXPECT_FALSE(reader.open("/nonexistent/log"));
   EXPECT_EQ(reader.error(), "No such file or directory");
@@ -101,7 +101,7 @@ TEST(LcmLogReader, SaysWhyAFileCannotBeOpened) {
   EXPECT_EQ(reader.error(), "is a directory, not a file");
 }
 
-TEST(LcmLogReader, TellsTruncationAtEveryByteOfTheLastEvent) {
+TEST(LcmLogReader, DetectsTruncationAtEveryByteOfTheLastEvent) {
   const std::string log = ten_events();
   for (std::size_t kept = 1; kept < kEventBytes; ++kept) {
     const Reading reading = read_bytes(log.substr(0, start_of(9) + kept));
@@ -133,7 +133,7 @@ TEST(LcmLogReader, SkipsGarbageBetweenEvents) {
   }
 }
 
-TEST(LcmLogReader, LosesOnlyTheEventThatMissesAByte) {
+TEST(LcmLogReader, LosesOnlyTheEventWithAMissingByte) {
   const std::string log = ten_events();
   for (std::size_t byte = 0; byte < kEventBytes; ++byte) {
     const Reading reading = read_bytes(std::string(log).erase(start_of(4) + byte, 1));
@@ -143,7 +143,7 @@ TEST(LcmLogReader, LosesOnlyTheEventThatMissesAByte) {
   }
 }
 
-TEST(LcmLogReader, LosesAtMostTheEventThatHasAByteTooMany) {
+TEST(LcmLogReader, LosesAtMostTheEventWithAnExtraByte) {
   const std::string log = ten_events();
   for (std::size_t byte = 1; byte < kEventBytes; ++byte) {
     const Reading reading =
@@ -164,7 +164,7 @@ TEST(LcmLogReader, LosesOnlyTheEventWithABadLength) {
     EXPECT_EQ(read_bytes(with_payload_length(4, length)).intact, all_but({4})) << length;
 }
 
-TEST(LcmLogReader, PayloadLengthOneShortCostsNoOtherEvent) {
+TEST(LcmLogReader, APayloadLengthOneShortCostsNoOtherEvent) {
   const Reading reading = read_bytes(with_payload_length(4, kPayload - 1));
   EXPECT_EQ(reading.intact, all_but({4}));
   EXPECT_EQ(reading.damaged_bytes, 1);
@@ -177,7 +177,7 @@ TEST(LcmLogReader, BadLengthInTheLastEventReadsAsTruncation) {
   EXPECT_TRUE(reading.truncated);
 }
 
-TEST(LcmLogReader, SeveralDamagesAtOnce) {
+TEST(LcmLogReader, SurvivesSeveralDamagesAtOnce) {
   std::string log = with_payload_length(8, 0x7fffffff);
   log = with_length(std::move(log), 2, 24, 5000);
   log += std::string(100, '\0');
@@ -194,7 +194,7 @@ TEST(LcmLogReader, FirstEventsMayBeMissing) {
   EXPECT_EQ(reading.damage.front().offset, 0);
 }
 
-TEST(LcmLogReader, SyncWordInAPayloadIsData) {
+TEST(LcmLogReader, TakesASyncWordInAPayloadAsData) {
   const TemporaryDirectory directory;
   const std::string inner = ten_events();
   LcmLogWriter writer;
@@ -212,7 +212,7 @@ TEST(LcmLogReader, SyncWordInAPayloadIsData) {
   EXPECT_EQ(reader.next(event), LogRead::end);
 }
 
-TEST(LcmLogReader, NoFileOfTextIsALog) {
+TEST(LcmLogReader, RefusesFilesOfText) {
   const Reading reading = read_bytes("time_s,F1\n0.00,1\n");
   EXPECT_TRUE(reading.intact.empty());
   EXPECT_EQ(reading.other, 0);
@@ -220,7 +220,7 @@ TEST(LcmLogReader, NoFileOfTextIsALog) {
   EXPECT_FALSE(reading.truncated);
 }
 
-TEST(LcmLogReader, RandomDamageNeverCostsAnUntouchedEventNorTime) {
+TEST(LcmLogReader, RandomDamageCostsNoIntactEventAndNoTime) {
   std::mt19937 random(20261121);
   const std::string log = ten_events();
   for (int trial = 0; trial < 2000; ++trial) {
@@ -235,7 +235,7 @@ TEST(LcmLogReader, RandomDamageNeverCostsAnUntouchedEventNorTime) {
   }
 }
 
-TEST(LcmLogReader, ManyFalseStartsStayLinear) {
+TEST(LcmLogReader, ReadsManyFalseStartsInLinearTime) {
   std::string log;
   const std::string event = with_payload_length(0, 8 * 1024 * 1024).substr(0, kEventBytes);
   while (log.size() < 20u * 1024 * 1024) log += event.substr(0, 40);
@@ -273,7 +273,7 @@ std::int64_t examined_of(const std::string& bytes) {
   return reader.examined_bytes();
 }
 
-TEST(LcmLogReader, ExaminesTwiceTheBytesOfALogTwiceAsLongWhateverItHolds) {
+TEST(LcmLogReader, ExaminesBytesInProportionToTheLength) {
   constexpr std::size_t kMiB = 1 << 20;
   const std::int64_t one = examined_of(reaching_to_the_end(kMiB));
   const std::int64_t two = examined_of(reaching_to_the_end(2 * kMiB));
@@ -283,7 +283,7 @@ TEST(LcmLogReader, ExaminesTwiceTheBytesOfALogTwiceAsLongWhateverItHolds) {
   EXPECT_LT(four, 20 * static_cast<std::int64_t>(4 * kMiB));
 }
 
-TEST(LcmLogReader, RefusesEveryEventThatIsReachedOver) {
+TEST(LcmLogReader, RefusesEveryOverlappedEvent) {
   const std::string log = reaching_to_the_end(64 * 100);
   const Reading reading = read_bytes(log);
   EXPECT_EQ(reading.other, 1);  // the event that reaches beyond the others
@@ -309,7 +309,7 @@ TEST(LcmLogReader, ReadsForeignLogsToTheLastByte) {
   }
 }
 
-TEST(LcmLogReader, ReadsAnHourWellInsideASecond) {
+TEST(LcmLogReader, ReadsAnHourWithinASecond) {
   const TemporaryDirectory directory;
   LcmLogWriter writer;
   ASSERT_TRUE(writer.open(directory.path("hour")));

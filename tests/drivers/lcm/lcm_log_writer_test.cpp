@@ -54,7 +54,7 @@ TEST(LcmLogWriter, LcmLogplayerPlaysIt) {
   EXPECT_EQ(reader.next(event), LogRead::end);
 }
 
-TEST(LcmLogWriter, LeavesNothingUnderTheNameUntilClosed) {
+TEST(LcmLogWriter, CreatesItsFileOnlyWhenClosed) {
   const TemporaryDirectory directory;
   {
     LcmLogWriter writer;
@@ -65,7 +65,7 @@ TEST(LcmLogWriter, LeavesNothingUnderTheNameUntilClosed) {
   EXPECT_TRUE(directory.names().empty());
 }
 
-TEST(LcmLogWriter, RefusesWhatNoReaderWouldAccept) {
+TEST(LcmLogWriter, RefusesEventsThatNoReaderAccepts) {
   const TemporaryDirectory directory;
   LcmLogWriter writer;
   EXPECT_FALSE(writer.open(directory.path("no/such/directory")));
@@ -76,7 +76,7 @@ TEST(LcmLogWriter, RefusesWhatNoReaderWouldAccept) {
   EXPECT_TRUE(directory.names().empty());
 }
 
-TEST(LcmLogWriter, SaysWhenTheDiskIsFull) {
+TEST(LcmLogWriter, ReportsAFullDisk) {
   LcmLogWriter writer;
   const TemporaryDirectory directory;
   ASSERT_TRUE(writer.open(directory.path("log")));
@@ -90,7 +90,7 @@ TEST(LcmLogWriter, SaysWhenTheDiskIsFull) {
   EXPECT_TRUE(directory.names().empty());
 }
 
-TEST(LcmLogWriter, WritesThroughNoLink) {
+TEST(LcmLogWriter, WritesNoFileThroughALink) {
   const TemporaryDirectory directory;
   std::filesystem::create_symlink(directory.path("victim"), directory.path("log.partial"));
   LcmLogWriter writer;

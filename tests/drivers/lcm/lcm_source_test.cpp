@@ -31,13 +31,13 @@ std::vector<std::string> heard(LcmProvider& lcm) {
 
 const std::vector<std::string> kWanted{"ACCEL", "A.B"};
 
-TEST(LcmSource, HandsOverItsChannelsAndNoOthers) {
+TEST(LcmSource, DeliversOnlyItsChannels) {
   LcmProvider lcm("memq://");
   EXPECT_FALSE(lcm.group());
   EXPECT_EQ(heard(lcm), kWanted);
 }
 
-TEST(LcmSource, LikewiseOverMulticast) {
+TEST(LcmSource, DeliversOnlyItsChannelsOverMulticast) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::string error;
   const auto lcm = open_lcm("udpm://239.255.76.67:7713?ttl=0", {}, error);
@@ -47,7 +47,7 @@ TEST(LcmSource, LikewiseOverMulticast) {
   EXPECT_EQ(heard(*lcm), kWanted);
 }
 
-TEST(LcmSource, KnowsHowManyMessagesWaited) {
+TEST(LcmSource, CountsWaitingMessages) {
   LcmProvider lcm("memq://");
   Seen seen;
   LcmSource source(lcm, {"ACCEL"}, 50, seen.handler());
@@ -60,7 +60,7 @@ TEST(LcmSource, KnowsHowManyMessagesWaited) {
   EXPECT_LE(source.backlog_high_water(), 20);
 }
 
-TEST(OpenLcm, SaysWhyLcmCannotStart) {
+TEST(OpenLcm, ReportsWhyLcmCannotStart) {
   std::string error;
   EXPECT_EQ(open_lcm("bogus://", {}, error), nullptr);
   EXPECT_NE(error.find("bogus://"), std::string::npos);
@@ -72,7 +72,7 @@ TEST(OpenLcm, SaysWhyLcmCannotStart) {
   }
 }
 
-TEST(OpenLcm, SaysWhichInterfacesThereAre) {
+TEST(OpenLcm, ListsTheInterfaces) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::string error;
   EXPECT_EQ(open_lcm("udpm://?ttl=0", {{"eth77"}, 1 << 20}, error), nullptr);

@@ -23,7 +23,7 @@ constexpr std::uint64_t kAccelFingerprint = 0xecb49719e8cabe05;
 
 const std::string kFirstLog = FRAMEWATCH_SOURCE_DIR "/tests/golden/every_type.lcmlog";
 
-TEST(Schema, ALogOfTheFirstReleaseHoldsEveryExample) {
+TEST(Schema, ReadsEveryExampleFromALogOfTheFirstRelease) {
   LcmLogReader reader;
   ASSERT_TRUE(reader.open(kFirstLog)) << reader.error();
   LogEvent event;
@@ -48,7 +48,7 @@ TEST(Schema, EveryMessageDecodesToWhatWasEncoded) {
   });
 }
 
-TEST(Schema, NoMessageDecodesFromOtherSizes) {
+TEST(Schema, NoMessageDecodesFromAnotherSize) {
   examples::for_each([](const char* lcm_channel, const auto& message) {
     using Type = std::decay_t<decltype(message)>;
     const std::vector<std::uint8_t> bytes = encoded(message);
@@ -68,7 +68,7 @@ TEST(Schema, EveryLayoutHasAnExample) {
   EXPECT_EQ(seen.size(), std::size(kMessageLayouts));
 }
 
-TEST(Schema, AccelerationsAreReadWhereTheyLie) {
+TEST(Schema, ReadsAccelerationsInPlace) {
   const std::vector<std::uint8_t> bytes = encoded(examples::accel());
   const auto sample = decode_accel(bytes.data(), bytes.size());
   ASSERT_TRUE(sample);
@@ -86,11 +86,11 @@ TEST(Schema, ChannelTablesGiveTheirEntries) {
   EXPECT_EQ(table->entries[1], (ChannelTable::Entry{"F1-Y1", 2, 1}));
 }
 
-TEST(Schema, FingerprintsAreThoseOfTheFirstRelease) {
+TEST(Schema, KeepsTheFingerprintsOfTheFirstRelease) {
   EXPECT_EQ(static_cast<std::uint64_t>(accel_t::getHash()), kAccelFingerprint);
 }
 
-TEST(Schema, SaysWhatAPayloadIsInsteadOfWhatItShouldBe) {
+TEST(Schema, NamesTheActualTypeOfAWrongPayload) {
   const auto bytes = encoded(examples::accel());
   EXPECT_EQ(why_not("window_estimate_t", bytes), "accel_t where window_estimate_t belongs");
   auto longer = encoded(examples::window_estimate());
@@ -99,7 +99,7 @@ TEST(Schema, SaysWhatAPayloadIsInsteadOfWhatItShouldBe) {
   EXPECT_EQ(why_not("accel_t", std::vector<std::uint8_t>(3)), "3 bytes are too few for accel_t");
 }
 
-TEST(Schema, ANewerTypeIsCalledOne) {
+TEST(Schema, NamesANewerType) {
   auto bytes = encoded(examples::window_estimate());
   bytes[0] ^= 0x40;
   const std::string why = why_not("window_estimate_t", bytes);
@@ -108,7 +108,7 @@ TEST(Schema, ANewerTypeIsCalledOne) {
   EXPECT_EQ(known_type(*fingerprint(bytes)), nullptr);
 }
 
-TEST(Schema, ChannelsTellTheirType) {
+TEST(Schema, FindsATypeByItsChannel) {
   EXPECT_STREQ(type_of_lcm_channel("ACCEL_ROOF"), "accel_t");
   EXPECT_STREQ(type_of_lcm_channel("ROOF_CHANNELS"), "channel_table_t");
   EXPECT_STREQ(type_of_lcm_channel("FRAMEWATCH_ESTIMATE_2.5S"), "window_estimate_t");

@@ -24,7 +24,7 @@ std::int64_t up_to(std::mt19937& random, std::int64_t most) {
   return std::uniform_int_distribution<std::int64_t>(1, most)(random);
 }
 
-TEST(OverlapScan, NothingIsReachedOverByNothing) {
+TEST(OverlapScan, FindsNoOverlapInDisjointStretches) {
   OverlapScan scan;
   EXPECT_EQ(scan.reached_over_at(), OverlapScan::kNone);
   scan.add(3, 10);
@@ -37,7 +37,7 @@ TEST(OverlapScan, NothingIsReachedOverByNothing) {
   EXPECT_EQ(scan.reached_over_at(), OverlapScan::kNone);
 }
 
-TEST(OverlapScan, SaysWhatLookingAtAllOfThemSays) {
+TEST(OverlapScan, AgreesWithAnExhaustiveSearch) {
   std::mt19937 random(20261123);
   for (int trial = 0; trial < 300; ++trial) {
     OverlapScan scan;

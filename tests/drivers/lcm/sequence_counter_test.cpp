@@ -18,7 +18,7 @@ TEST(SequenceCounter, CountsMissingNumbersAsLost) {
   EXPECT_EQ(counter.leaps, 0);
 }
 
-TEST(SequenceCounter, LateOneIsNoLongerLost) {
+TEST(SequenceCounter, ALateMessageIsNoLongerLost) {
   SequenceCounter counter;
   for (const std::int64_t s : {1, 2, 5, 3, 6, 4}) EXPECT_EQ(counter.see(s, s), Verdict::fresh);
   EXPECT_EQ(counter.lost, 0);
@@ -26,7 +26,7 @@ TEST(SequenceCounter, LateOneIsNoLongerLost) {
   EXPECT_EQ(counter.received, 6);
 }
 
-TEST(SequenceCounter, TellsDuplicates) {
+TEST(SequenceCounter, CountsDuplicates) {
   SequenceCounter counter;
   for (const std::int64_t s : {1, 2, 3}) EXPECT_EQ(counter.see(s, s), Verdict::fresh);
   EXPECT_EQ(counter.see(3, 3), Verdict::duplicate);
@@ -36,7 +36,7 @@ TEST(SequenceCounter, TellsDuplicates) {
   EXPECT_EQ(counter.lost, 0);
 }
 
-TEST(SequenceCounter, NodeThatRestartsIsNoLoss) {
+TEST(SequenceCounter, ARestartedNodeIsNoLoss) {
   SequenceCounter counter;
   counter.see(1000, 1000);
   EXPECT_EQ(counter.see(0, 1001), Verdict::fresh);
@@ -45,7 +45,7 @@ TEST(SequenceCounter, NodeThatRestartsIsNoLoss) {
   EXPECT_EQ(counter.lost, 0);
 }
 
-TEST(SequenceCounter, TimeRunningBackwardsIsSeenAndFollowed) {
+TEST(SequenceCounter, FollowsTimeThatRunsBackwards) {
   SequenceCounter counter;
   counter.see(1, 100);
   EXPECT_EQ(counter.see(2, 50), Verdict::backwards);

@@ -30,13 +30,13 @@ struct Fixture {
   }
 };
 
-TEST(SequenceWatch, IsSilentWhileAllIsWell) {
+TEST(SequenceWatch, IsSilentWithoutTrouble) {
   Fixture f;
   f.seconds(1000, {100, 0, 0, 0, 0});
   EXPECT_TRUE(f.news.empty());
 }
 
-TEST(SequenceWatch, AFloodIsOnePieceOfNewsUntilItIsOver) {
+TEST(SequenceWatch, ReportsAFloodOnceUntilItEnds) {
   for (std::size_t t = 0; t < kSequenceTroubles; ++t) {
     Fixture f;
     f.seconds(20, {100, 0, 0, 0, 0});
@@ -57,7 +57,7 @@ TEST(SequenceWatch, AFloodIsOnePieceOfNewsUntilItIsOver) {
   }
 }
 
-TEST(SequenceWatch, FewLossesAreNoRate) {
+TEST(SequenceWatch, IgnoresFewLosses) {
   Fixture f;
   f.seconds(100, {1000, 5, 0, 0, 0});
   EXPECT_TRUE(f.news.empty());
@@ -66,7 +66,7 @@ TEST(SequenceWatch, FewLossesAreNoRate) {
   EXPECT_EQ(f.news[0].trouble, SequenceTrouble::losses);
 }
 
-TEST(SequenceWatch, AClockSetBackEndsNothingAndKeepsNothingUpForEver) {
+TEST(SequenceWatch, AClockSetBackOnlyDelaysTheEndOfAFinding) {
   Fixture f;
   f.seconds(5, {100, 0, 0, 1, 0});
   f.now_us -= 3600 * kSecond_us;

@@ -13,7 +13,7 @@
 namespace framewatch::drivers {
 namespace status_message_test {
 
-TEST(MessageCheck, StatusAndEventSurviveATripAndRefuseACut) {
+TEST(MessageCheck, StatusAndEventSurviveARoundTripAndRefuseTruncation) {
   status_t s{};
   s.channels = 1;
   s.name = {"a"};

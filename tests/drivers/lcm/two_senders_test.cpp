@@ -55,7 +55,7 @@ void both(Fixture& f, int seconds, const LcmSender& node, const LcmSender& twin,
   }
 }
 
-TEST(TwoSenders, TheSamplesOfTheBoundAddressGoOnAlone) {
+TEST(TwoSenders, OnlyTheBoundAddressContinues) {
   Fixture f;
   both(f, 10, kNode, kTwin);
   EXPECT_EQ(f.taken(kTrue_mps2), 1100);
@@ -72,7 +72,7 @@ TEST(TwoSenders, TheSamplesOfTheBoundAddressGoOnAlone) {
   EXPECT_EQ(f.notices[0].other, kTwin);
 }
 
-TEST(TwoSenders, OrNoneByConfiguration) {
+TEST(TwoSenders, StopsBothIfSoConfigured) {
   Fixture f(TwoSenders::none);
   both(f, 10, kNode, kTwin);
   EXPECT_EQ(f.taken(kTrue_mps2), 100);
@@ -83,7 +83,7 @@ TEST(TwoSenders, OrNoneByConfiguration) {
   EXPECT_GT(f.taken(kTrue_mps2), 100 + 350);  // after 5 s with one alone
 }
 
-TEST(TwoSenders, WithoutAddressesTheSameNumbersWithOtherContentsStopTheNode) {
+TEST(TwoSenders, WithoutAddressesEqualNumbersWithOtherContentsStopTheNode) {
   Fixture f;
   both(f, 10, {}, {});
   EXPECT_LE(f.taken(kTwins_mps2), 4);
@@ -94,7 +94,7 @@ TEST(TwoSenders, WithoutAddressesTheSameNumbersWithOtherContentsStopTheNode) {
   EXPECT_GE(f.intake.counters().duplicate, 990);
 }
 
-TEST(TwoSenders, WithoutAddressesTheFirstNumberingGoesOn) {
+TEST(TwoSenders, WithoutAddressesTheFirstNumberingContinues) {
   Fixture f;
   both(f, 10, {}, {}, 5'000'000);
   EXPECT_EQ(f.taken(kTwins_mps2), 0);
@@ -104,7 +104,7 @@ TEST(TwoSenders, WithoutAddressesTheFirstNumberingGoesOn) {
   EXPECT_EQ(f.notices[0].trouble, SequenceTrouble::two_senders);
 }
 
-TEST(TwoSenders, AFloodIsOneNoticeAndItsEndAnother) {
+TEST(TwoSenders, ReportsAFloodOnceAndItsEndOnce) {
   Fixture f;
   for (std::int64_t i = 0; i < 10'000; ++i) {
     f.accel(i, kTrue_mps2, kNode);
@@ -118,7 +118,7 @@ TEST(TwoSenders, AFloodIsOneNoticeAndItsEndAnother) {
   EXPECT_TRUE(f.notices[1].over);
 }
 
-TEST(TwoSenders, TheNextTakesOverFromASilentOne) {
+TEST(TwoSenders, AnotherTakesOverFromASilentSender) {
   Fixture f;
   for (std::int64_t i = 0; i < 100; ++i) f.accel(i, kTrue_mps2, kNode);
   for (std::int64_t i = 100; i < 1000; ++i) f.accel(i, kTwins_mps2, kTwin, 1, -90);
@@ -126,7 +126,7 @@ TEST(TwoSenders, TheNextTakesOverFromASilentOne) {
   for (const IntakeNotice& n : f.notices) EXPECT_NE(n.trouble, SequenceTrouble::two_senders);
 }
 
-TEST(TwoSenders, DuplicatesLeapsAndLossesAreNoticed) {
+TEST(TwoSenders, ReportsDuplicatesLeapsAndLosses) {
   Fixture f;
   for (std::int64_t i = 0; i < 1000; ++i)
     for (int twice = 0; twice < 2; ++twice) f.accel(i, kTrue_mps2, kNode);
@@ -146,7 +146,7 @@ TEST(TwoSenders, DuplicatesLeapsAndLossesAreNoticed) {
   EXPECT_EQ(h.notices[0].trouble, SequenceTrouble::losses);
 }
 
-TEST(TwoSenders, ATableAgainstTheConfigurationIsNoticedOnceAndChangesNothing) {
+TEST(TwoSenders, ReportsAContradictingTableOnceAndIgnoresIt) {
   Fixture f;
   for (std::int64_t i = 0; i < 10'000; ++i) {
     if (i < 1000) f.table(i, {"two", "one"}, {{"ACCEL", 1, 0}, {"ACCEL", 2, 0}});
@@ -182,7 +182,7 @@ TEST(TwoSenders, ATableMovesAChannelOnlyWhenItsNodeIsSilent) {
   EXPECT_NEAR(static_cast<double>(f.taken(kTwins_mps2, 2)), 700, 100);  // 10 s after the last one
 }
 
-TEST(TwoSenders, AnotherLogMayBindAnew) {
+TEST(TwoSenders, ANewLogMayBindAgain) {
   Fixture f;
   f.table(0, {"named"}, {{"ACCEL", 7, 0}});
   for (std::int64_t i = 0; i < 100; ++i) f.accel(i, kTrue_mps2, {}, 7);

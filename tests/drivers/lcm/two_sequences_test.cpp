@@ -58,7 +58,7 @@ Taken taken(SequenceCounter& counter, std::int64_t number, std::int64_t phase_us
   return out;
 }
 
-TEST(TwoSequences, TheFirstGoesOnWhereNumbersTellThemApart) {
+TEST(TwoSequences, KeepsTheFirstIfNumbersDistinguishThem) {
   for (const std::int64_t number : {5'000'000, 700, 100, 65, -65, -700, -5'000'000})
     for (const std::int64_t phase_us : {0, 5000, -5000})
       for (const bool before : {false, true}) {
@@ -72,7 +72,7 @@ TEST(TwoSequences, TheFirstGoesOnWhereNumbersTellThemApart) {
       }
 }
 
-TEST(TwoSequences, NeverAMixtureWhateverTheOffset) {
+TEST(TwoSequences, NeverMixesThemAtAnyOffset) {
   for (std::int64_t number = -70; number <= 70; ++number)
     for (const std::int64_t phase_us : {0, 5000, -5000, 1, -1})
       for (const bool before : {false, true}) {
@@ -86,7 +86,7 @@ TEST(TwoSequences, NeverAMixtureWhateverTheOffset) {
       }
 }
 
-TEST(TwoSequences, WhereNothingTellsThemApartNoneGoesOnUntilOneIsLeft) {
+TEST(TwoSequences, StopsIndistinguishableSendersUntilOneIsLeft) {
   SequenceCounter counter(kRate_hz);
   const Taken both = taken(counter, 0, 0, true);
   EXPECT_LE(both.first + both.second, 105);
@@ -99,7 +99,7 @@ TEST(TwoSequences, WhereNothingTellsThemApartNoneGoesOnUntilOneIsLeft) {
   EXPECT_LT(fresh, 450);  // of the 4 s after the 5 s that must be taken
 }
 
-TEST(TwoSequences, RepeatedMessagesAreNoOtherSender) {
+TEST(TwoSequences, RepeatedMessagesAreNotASecondSender) {
   SequenceCounter counter(kRate_hz);
   for (std::int64_t i = 0; i < 1000; ++i) {
     EXPECT_EQ(counter.see(message(i, kFirst)), Verdict::fresh);
@@ -110,7 +110,7 @@ TEST(TwoSequences, RepeatedMessagesAreNoOtherSender) {
   EXPECT_FALSE(counter.contested(message(1000, kFirst).arrival_us));
 }
 
-TEST(TwoSequences, ALeapIsNoLoss) {
+TEST(TwoSequences, ALeapIsNotALoss) {
   SequenceCounter counter(kRate_hz);
   for (std::int64_t i = 0; i < 100; ++i) counter.see(message(i, kFirst));
   Message far = message(100, kFirst);
@@ -138,7 +138,7 @@ TEST(TwoSequences, AStampOfTomorrowDoesNotMakeALeapALoss) {
   EXPECT_EQ(counter.leaps, 1);
 }
 
-TEST(TwoSequences, AnOutageIsALossHoweverLong) {
+TEST(TwoSequences, AnOutageOfAnyLengthIsALoss) {
   SequenceCounter counter(kRate_hz);
   counter.see(message(0, kFirst));
   std::int64_t i = 0;
@@ -150,7 +150,7 @@ TEST(TwoSequences, AnOutageIsALossHoweverLong) {
   EXPECT_EQ(counter.leaps, 0);
 }
 
-TEST(TwoSequences, ANodeThatBeginsAnewIsFollowedFromItsSecondMessageOn) {
+TEST(TwoSequences, FollowsARestartedNodeFromItsSecondMessage) {
   SequenceCounter counter(kRate_hz);
   for (std::int64_t i = 0; i < 500; ++i) counter.see(message(i, kFirst));
   EXPECT_EQ(counter.see(message(500, kFirst, -600)), Verdict::held);
@@ -178,7 +178,7 @@ TEST(TwoSequences, TheSecondTakesOverWhenTheFirstIsSilent) {
   EXPECT_LT(fresh, 810);  // silent for 2 s
 }
 
-TEST(TwoSequences, ANodeThatDoesNotCountIsStillTaken) {
+TEST(TwoSequences, TakesANodeWithoutACounter) {
   SequenceCounter counter(kRate_hz);
   std::int64_t fresh = 0;
   for (std::int64_t i = 0; i < 1000; ++i) {
@@ -190,7 +190,7 @@ TEST(TwoSequences, ANodeThatDoesNotCountIsStillTaken) {
   EXPECT_EQ(counter.leaps, 999);
 }
 
-TEST(TwoSequences, RandomNumbersAmongThoseOfANodeAreLeftOut) {
+TEST(TwoSequences, LeavesOutRandomNumbersAmongANodes) {
   SequenceCounter counter(kRate_hz);
   std::mt19937_64 random(7);
   std::int64_t first = 0, second = 0;
@@ -208,7 +208,7 @@ TEST(TwoSequences, RandomNumbersAmongThoseOfANodeAreLeftOut) {
   EXPECT_EQ(counter.lost, 0);
 }
 
-TEST(TwoSequences, AReceiverWhoseClockIsSetBackGoesOn) {
+TEST(TwoSequences, ContinuesAfterTheReceiversClockIsSetBack) {
   SequenceCounter counter(kRate_hz);
   (void)taken(counter, 0, 0);
   std::int64_t fresh = 0;

@@ -51,7 +51,7 @@ TEST(RecordMerge, KeepsAllInstantsWithHoles) {
   EXPECT_EQ(merged->accel_mps2[1][19], 19);
 }
 
-TEST(RecordMerge, RefusesWhatDoesNotBelongTogether) {
+TEST(RecordMerge, RefusesRecordsThatDoNotFitTogether) {
   const Record a = ramp("a", 0, 0.01, 100);
   EXPECT_EQ(problem({a, ramp("b", 2, 0.01, 100)}).substr(0, 29), "b: the clocks do not overlap:");
   EXPECT_EQ(problem({a, ramp("b", 0, 0.02, 50)}).substr(0, 15), "b: rates differ");

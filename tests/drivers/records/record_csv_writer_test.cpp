@@ -28,7 +28,7 @@ TEST(RecordCsvWriter, WritesHeaderValuesAndHoles) {
   EXPECT_EQ(directory.names(), std::vector<std::string>{"rec.csv"});
 }
 
-TEST(RecordCsvWriter, CompressesTheSameWayEveryTime) {
+TEST(RecordCsvWriter, CompressesToTheSameBytesEveryTime) {
   const test::TemporaryDirectory directory;
   for (const char* name : {"a.csv.gz", "b.csv.gz"}) {
     RecordCsvWriter writer;
@@ -40,7 +40,7 @@ TEST(RecordCsvWriter, CompressesTheSameWayEveryTime) {
   EXPECT_EQ(a, test::read_file(directory.path("b.csv.gz")));
 }
 
-TEST(RecordCsvWriter, LeavesNothingWithoutClose) {
+TEST(RecordCsvWriter, LeavesNoFileWithoutClose) {
   const test::TemporaryDirectory directory;
   {
     RecordCsvWriter writer;
@@ -49,7 +49,7 @@ TEST(RecordCsvWriter, LeavesNothingWithoutClose) {
   EXPECT_TRUE(directory.names().empty());
 }
 
-TEST(RecordCsvWriter, SaysWhyItCannot) {
+TEST(RecordCsvWriter, ReportsWhyItCannotWrite) {
   const test::TemporaryDirectory directory;
   RecordCsvWriter nowhere, comma;
   EXPECT_FALSE(nowhere.open(directory.path("no/such/rec.csv"), {"a"}));

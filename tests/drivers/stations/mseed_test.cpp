@@ -89,7 +89,7 @@ TEST_F(Miniseed, EveryEncodingAndByteOrderGivesTheSameRecord) {
       }
 }
 
-TEST_F(Miniseed, ACountIsAskedFor) {
+TEST_F(Miniseed, RefusesCountsWithoutAUnit) {
   options_.unit_mps2.reset();
   const auto record = read(miniseed(span(0, 100)));
   expect_said(record, "does not say what a count is: declare it with --unit");
@@ -103,7 +103,7 @@ TEST_F(Miniseed, OptionsOfTablesDoNotApply) {
   expect_said(record, "--time, --time-unit and --decimal are for tables");
 }
 
-TEST_F(Miniseed, ChannelsInTurnsAreSideBySideAndMayEndWhereTheyDo) {
+TEST_F(Miniseed, ReadsInterleavedChannelsOfDifferentLengths) {
   test::SeedSpan a = span(0, 1000), b = span(5, 1000), c = span(1000, 1000);
   b.channel = "HN2";
   const auto record = read(miniseed(c) + miniseed(b) + miniseed(a));
@@ -138,7 +138,7 @@ TEST_F(Miniseed, ColumnsAndNamesChooseAndNameChannels) {
   expect_said(record, "--columns \"roof?\": there is no such channel");
 }
 
-TEST_F(Miniseed, AGapIsFilledAndSaid) {
+TEST_F(Miniseed, FillsAndReportsAGap) {
   const auto record = read(miniseed(span(0, 600)) + miniseed(span(750, 600)));
   ASSERT_TRUE(record) << said(record);
   ASSERT_EQ(record->time_s.size(), 1350U);
@@ -148,7 +148,7 @@ TEST_F(Miniseed, AGapIsFilledAndSaid) {
   expect_said(record, "an interruption of 1.5 s from 2026-11-24T00:00:06.250000Z on");
 }
 
-TEST_F(Miniseed, WhatIsThereTwiceIsTakenOnceWhereItIsAlikeAndRefusedWhereNot) {
+TEST_F(Miniseed, TakesRepeatedSamplesOnceAndRefusesContradictions) {
   const std::string first = miniseed(span(0, 600));
   auto record = read(first + first + miniseed(span(500, 300)));
   ASSERT_TRUE(record) << said(record);
@@ -161,14 +161,14 @@ TEST_F(Miniseed, WhatIsThereTwiceIsTakenOnceWhereItIsAlikeAndRefusedWhereNot) {
   expect_said(record, "samples from 2026-11-24T00:00:05.250000Z on appear twice, with different");
 }
 
-TEST_F(Miniseed, SamplesBetweenTheStepsAreRefused) {
+TEST_F(Miniseed, RefusesSamplesOffTheTimeGrid) {
   test::SeedSpan later = span(600, 600);
   later.start_us += 3'000;
   const auto record = read(miniseed(span(0, 600)) + miniseed(later));
   expect_said(record, "are 0.30 of a step off those before");
 }
 
-TEST_F(Miniseed, AClockThatIsALittleOffItsRateKeepsItsTimes) {
+TEST_F(Miniseed, KeepsTheTimesOfASlightlyWrongClock) {
   for (const bool microseconds : {true, false}) {
     std::string file;
     for (int i = 0; i < 200; ++i) {
@@ -186,7 +186,7 @@ TEST_F(Miniseed, AClockThatIsALittleOffItsRateKeepsItsTimes) {
   }
 }
 
-TEST_F(Miniseed, RecordsWithoutSamplesAreLeftOutAndSaid) {
+TEST_F(Miniseed, LeavesOutAndReportsRecordsWithoutSamples) {
   test::SeedSpan log = span(0, 40);
   log.encoding = DE_ASCII;
   log.channel = "LOG";
@@ -198,7 +198,7 @@ TEST_F(Miniseed, RecordsWithoutSamplesAreLeftOutAndSaid) {
   expect_said(record, "there are no samples");
 }
 
-TEST_F(Miniseed, DamageIsToldWithItsPlace) {
+TEST_F(Miniseed, ReportsDamageWithItsPlace) {
   const std::string good = miniseed(span(0, 3000));
   auto record = read(good.substr(0, good.size() - 100));
   expect_said(record, "the last record is cut off");
@@ -212,7 +212,7 @@ TEST_F(Miniseed, DamageIsToldWithItsPlace) {
   EXPECT_FALSE(record);
 }
 
-TEST_F(Miniseed, SamplesThatLookLikeAnotherFormatsHeaderAreSamples) {
+TEST_F(Miniseed, TakesSamplesThatLookLikeAHeaderAsSamples) {
   for (const int byte_order : {0, 1}) {
     test::SeedSpan quiet = span(0, 100);
     quiet.encoding = DE_INT32;
@@ -226,7 +226,7 @@ TEST_F(Miniseed, SamplesThatLookLikeAnotherFormatsHeaderAreSamples) {
   }
 }
 
-TEST_F(Miniseed, GzipIsReadAsItIs) {
+TEST_F(Miniseed, ReadsGzip) {
   test::write_file(path_, miniseed(span(0, 3000)));
   ASSERT_EQ(std::system(("gzip " + path_).c_str()), 0);
   const auto record = read_record(path_ + ".gz", options_, problems_);
@@ -234,20 +234,20 @@ TEST_F(Miniseed, GzipIsReadAsItIs) {
   expect_counts(*record, 0, 0, 0, 3000);
 }
 
-TEST_F(Miniseed, KinsmenThatAreNotReadAreCalledByTheirName) {
+TEST_F(Miniseed, NamesRelatedFormatsThatItDoesNotRead) {
   auto record = read("MS\x03" + std::string(100, '\0'));
   expect_said(record, "is miniSEED 3, which is not supported: write miniSEED 2");
   record = read("000001V 010009502.3121992,001" + std::string(300, ' '));
   expect_said(record, "is a full SEED volume");
 }
 
-TEST_F(Miniseed, AFormatThatIsDeclaredIsNotGuessed) {
+TEST_F(Miniseed, DoesNotGuessADeclaredFormat) {
   options_.format = RecordFormat::mseed;
   const auto record = read("time_s,a\n0,1\n0.01,2\n");
   expect_said(record, "byte 0: no miniSEED record is here");
 }
 
-TEST(UnreadFormats, AreRefusedWithWhatHelps) {
+TEST(UnreadFormats, AreRefusedWithAdvice) {
   test::TemporaryDirectory directory;
   const auto refused = [&](const std::string& name, const std::string& bytes) {
     test::write_file(directory.path(name), bytes);

@@ -57,7 +57,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return at == std::string::npos ? text : text.replace(at, what.size(), by);
 }
 
-TEST_F(StationFile, OfCosmosHasNameUnitStartAndDirection) {
+TEST_F(StationFile, ReadsNameUnitStartAndDirectionFromCosmos) {
   const auto r = read(cosmos());
   ASSERT_TRUE(r) << (problems_.empty() ? "" : problems_[0].message);
   EXPECT_EQ(r->names, std::vector<std::string>{"NP.8040.01.HNE"});
@@ -74,7 +74,7 @@ TEST_F(StationFile, OfCosmosHasNameUnitStartAndDirection) {
                 "natural frequency 224 Hz (damping 0.7); begins 2018-11-30T17:29:06.332Z"}));
 }
 
-TEST_F(StationFile, OfCosmosMayHoldCountsOrSeveralQuantitiesAndChannels) {
+TEST_F(StationFile, ReadsCosmosWithCountsAndSeveralQuantitiesAndChannels) {
   const auto raw = read(cosmos({1, 50, 0, "400", "",
                                 "2 raw accel.   pts, approx 0 secs, units= counts(50),"
                                 "Format=(1I8)\n -160876\n  100000\n"}));
@@ -103,20 +103,20 @@ TEST_F(StationFile, OfCosmosMayHoldCountsOrSeveralQuantitiesAndChannels) {
   EXPECT_TRUE(said("velocity and displacement in the file were left out"));
 }
 
-TEST_F(StationFile, OfCosmosMayBeWrittenInOtherLettersAndFormats) {
+TEST_F(StationFile, ReadsCosmosInOtherLettersAndFormats) {
   const auto r = read(replaced(replaced(cosmos(), "4 acceleration", "4 Acceleration"),
                                "Format=(3F9.3)", "Format=(1P,3F9.3) (free)"));
   ASSERT_TRUE(r) << problems_[0].message;
   EXPECT_DOUBLE_EQ(r->accel_mps2[0][3], -0.025);
 }
 
-TEST_F(StationFile, OfCosmosWithAPeakThatIsNotItsValuesSaysSo) {
+TEST_F(StationFile, ReportsACosmosPeakThatDiffersFromTheValues) {
   const auto r = read(replaced(cosmos(), "-9999.001    -999", "-5000.001    -999"));
   ASSERT_TRUE(r);
   EXPECT_EQ(r->notes.back(), "the header says a peak of 50 m/s2, the values have 99.99");
 }
 
-TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
+TEST_F(StationFile, RefusesDamagedCosmos) {
   const std::string good = cosmos();
   expect_refused(replaced(good, "with 5 text", "with many text"), 1, "text lines");
   expect_refused(replaced(good, "100 Integer", "10 Integer"), 6, "at least 76");
@@ -142,7 +142,7 @@ TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
   EXPECT_NEAR(r->time_s[0], kStart_utc_s + 0.332 + 9 * 3600, 1e-6);
 }
 
-TEST_F(StationFile, OfSmcIsReadWithItsHeader) {
+TEST_F(StationFile, ReadsSmcWithItsHeader) {
   const auto r = read(smc());
   ASSERT_TRUE(r) << problems_[0].where << problems_[0].message;
   EXPECT_EQ(r->names, std::vector<std::string>{"5108.ch02"});
@@ -158,7 +158,7 @@ TEST_F(StationFile, OfSmcIsReadWithItsHeader) {
   EXPECT_TRUE(undated->notes[0].ends_with(": up, floor 6"));
 }
 
-TEST_F(StationFile, OfSmcThatIsDamagedIsRefused) {
+TEST_F(StationFile, RefusesDamagedSmc) {
   expect_refused(smc().substr(0, 40), 0, "11 lines of text");
   expect_refused(smc({{16, "10"}}), 30, "9 of 10 numbers");
   expect_refused(smc({{16, "-1"}}), 14, "number of values");
@@ -173,7 +173,7 @@ TEST_F(StationFile, OfSmcThatIsDamagedIsRefused) {
   expect_refused(replaced(smc(), " .4000E+01", " .4zzzE+01"), 29, "not a finite number");
 }
 
-TEST_F(StationFile, OfKnetIsReadWithItsHeader) {
+TEST_F(StationFile, ReadsKnetWithItsHeader) {
   const auto r = read(knet());
   ASSERT_TRUE(r) << problems_[0].where << problems_[0].message;
   EXPECT_EQ(r->names, std::vector<std::string>{"AKT001.EW"});
@@ -188,7 +188,7 @@ TEST_F(StationFile, OfKnetIsReadWithItsHeader) {
   EXPECT_TRUE(deep->notes[0].ends_with(": up, in the borehole"));
 }
 
-TEST_F(StationFile, OfKnetThatIsDamagedIsRefused) {
+TEST_F(StationFile, RefusesDamagedKnet) {
   expect_refused(knet().substr(0, 200), 0, "17 lines");
   expect_refused(replaced(knet(), "Station Code", "Station Cod_"), 0, "no Station Code");
   expect_refused(replaced(knet(), "E-W", "7"), 13, "must be N-S");
@@ -205,7 +205,7 @@ RecordOptions declared(double unit_mps2) {
   return options;
 }
 
-TEST_F(StationFile, OfSacIsReadInEitherOrderOfBytes) {
+TEST_F(StationFile, ReadsSacInEitherByteOrder) {
   for (const bool other : {false, true}) {
     const auto r = read(sac(other), declared(0.5));
     ASSERT_TRUE(r) << problems_[0].message;
@@ -220,7 +220,7 @@ TEST_F(StationFile, OfSacIsReadInEitherOrderOfBytes) {
   EXPECT_EQ(undated->time_s[0], 0);
 }
 
-TEST_F(StationFile, OfSacThatIsDamagedOrNoAccelerationIsRefused) {
+TEST_F(StationFile, RefusesDamagedSacAndOtherQuantities) {
   expect_refused(sac(), 0, "--unit");
   const auto refused = [&](const std::string& text, const std::string& rule) {
     expect_refused(text, 0, rule, declared(1));
@@ -244,7 +244,7 @@ std::vector<std::string> files_of(const std::string& folder, const std::string& 
   return out;
 }
 
-TEST_F(StationFile, OfARealBuildingIsReadAsAWholeStation) {
+TEST_F(StationFile, ReadsTheWholeStationOfARealBuilding) {
   FRAMEWATCH_DATA_OR_SKIP(folder, "atwood_np8040_anchorage2018");
   const std::vector<std::string> files = files_of(folder, ".V1c.gz");
   ASSERT_EQ(files.size(), 52u);
@@ -264,7 +264,7 @@ TEST_F(StationFile, OfARealBuildingIsReadAsAWholeStation) {
   EXPECT_EQ(all->notes.size(), 53u);  // the place of each sensor, and notes on all
 }
 
-TEST_F(StationFile, RawCountsOfARealSensorAreWhatItsNetworkMadeOfThem) {
+TEST_F(StationFile, ConvertsRawCountsOfARealSensorAsItsNetworkDid) {
   FRAMEWATCH_DATA_OR_SKIP(folder, "atwood_np8040_anchorage2018");
   const auto raw = read_record(files_of(folder, "HNE.01.V0c.gz").at(0), {}, problems_);
   const auto made = read_record(files_of(folder, "HNE.01.V1c.gz").at(0), {}, problems_);

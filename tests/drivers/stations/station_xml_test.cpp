@@ -63,7 +63,7 @@ class StationXml : public testing::Test {
   std::vector<Problem> problems_;
 };
 
-TEST_F(StationXml, SaysWhatACountIsAndWhereAChannelSits) {
+TEST_F(StationXml, GivesSensitivityAndPlaceOfAChannel) {
   XmlChannel other;
   other.code = "HN2";
   other.azimuth = "-90";
@@ -97,7 +97,7 @@ TEST_F(StationXml, SaysWhatACountIsAndWhereAChannelSits) {
   EXPECT_TRUE(said("not used: the response's stages, elevation, depth"));
 }
 
-TEST_F(StationXml, OfAnotherEpochIsNotTaken) {
+TEST_F(StationXml, IgnoresOtherEpochs) {
   XmlChannel before, after;
   before.sensitivity = "1000";
   before.end = "2026-11-24T00:00:00";
@@ -112,7 +112,7 @@ TEST_F(StationXml, OfAnotherEpochIsNotTaken) {
   expect_said("two epochs of XX.TEST.01.HN1 at that time, on lines 6 and ");
 }
 
-TEST_F(StationXml, OfARateThatIsNotTheRecordsSaysSo) {
+TEST_F(StationXml, ReportsARateThatDiffersFromTheRecords) {
   XmlChannel slow;
   slow.rate = "50";
   const auto r = read(station_xml({slow}), miniseed(span()));
@@ -121,7 +121,7 @@ TEST_F(StationXml, OfARateThatIsNotTheRecordsSaysSo) {
       << r->notes[0];
 }
 
-TEST_F(StationXml, ThatCannotSayWhatACountIsIsRefused) {
+TEST_F(StationXml, RefusesADocumentWithoutSensitivity) {
   XmlChannel c;
   c.code = "HN9";
   EXPECT_FALSE(read(station_xml({c}), miniseed(span())));
@@ -144,7 +144,7 @@ TEST_F(StationXml, ThatCannotSayWhatACountIsIsRefused) {
   expect_said("none.xml");
 }
 
-TEST_F(StationXml, ServesSacToo) {
+TEST_F(StationXml, AppliesToSacToo) {
   XmlChannel c;
   c.network = "NP";
   c.station = "8040";
@@ -156,7 +156,7 @@ TEST_F(StationXml, ServesSacToo) {
   EXPECT_EQ(r->headers[0].azimuth_deg, 20);
 }
 
-TEST_F(StationXml, ThatIsDamagedIsRefused) {
+TEST_F(StationXml, RefusesADamagedDocument) {
   const std::string good = station_xml({{}});
   ASSERT_TRUE(parse(good));
   expect_refused(good.substr(0, good.size() - 20), 23, "is not XML");
@@ -184,7 +184,7 @@ TEST_F(StationXml, ThatIsDamagedIsRefused) {
 }
 
 /// A document type is refused, so no files are read and no entities are expanded.
-TEST_F(StationXml, WithADocumentTypeIsRefused) {
+TEST_F(StationXml, RefusesADocumentType) {
   const std::string good = station_xml({{}});
   const std::size_t root = good.find("<FDSN");
   test::write_file(directory_.path("secret"), "20");
@@ -200,7 +200,7 @@ TEST_F(StationXml, WithADocumentTypeIsRefused) {
   expect_refused(undefined, 7, "is not XML: undefined entity");
 }
 
-TEST_F(StationXml, OfAnyLengthTakesBoundedMemory) {
+TEST_F(StationXml, TakesBoundedMemoryForAnyLength) {
   std::string long_text(3'000'000, 'x');
   XmlChannel c;
   c.place = long_text;

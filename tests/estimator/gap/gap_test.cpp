@@ -97,7 +97,7 @@ class Gap : public testing::Test {
   GapOptions options_;
 };
 
-TEST_F(Gap, OfTheRightModelIsTheFloorThatItClaims) {
+TEST_F(Gap, IsAtTheNoiseFloorForTheRightModel) {
   GapMonitor m = monitor({theta_, {}});
   Seen seen;
   run(m, measured(kNoise), kNoise, seen);
@@ -113,14 +113,14 @@ TEST_F(Gap, OfTheRightModelIsTheFloorThatItClaims) {
   EXPECT_TRUE(seen.news.empty());
 }
 
-TEST_F(Gap, OfTheRightModelWithoutNoiseIsTheSchemesError) {
+TEST_F(Gap, IsTheIntegrationErrorWithoutNoise) {
   GapMonitor m = monitor({theta_, {}});
   Seen seen;
   run(m, measured(0), 0, seen);
   for (const GapWindow& w : seen.windows) EXPECT_LT(w.nrmse, kSchemeError);
 }
 
-TEST_F(Gap, DoesNotTakeAVerticalOrAForceForMotionOfTheFloors) {
+TEST_F(Gap, IgnoresVerticalAndForceChannels) {
   axes_.resize(5);
   axes_[3].name = "up";
   axes_[3].vertical = true;
@@ -137,7 +137,7 @@ TEST_F(Gap, DoesNotTakeAVerticalOrAForceForMotionOfTheFloors) {
   EXPECT_TRUE(std::isnan(seen.windows.back().axis_nrmse[4]));
 }
 
-TEST_F(Gap, KnowsLawsAndWhatIsWrongWithChannels) {
+TEST_F(Gap, IncludesLawsAndChannelErrors) {
   constexpr double kLate_s = 0.013;
   Effect cubic = make_effect(EffectKind::cubic_stiffness, {PlaceKind::frame, 1, 0});
   cubic.set("k3_npm3", 5e7);
@@ -162,7 +162,7 @@ TEST_F(Gap, KnowsLawsAndWhatIsWrongWithChannels) {
   EXPECT_GT(without.windows.back().nrmse, 0.2);
 }
 
-TEST_F(Gap, ThatLastsIsAnEventOnceAndIsClearedByTheRightModel) {
+TEST_F(Gap, RaisesOneEventIfItLastsUntilTheModelIsRight) {
   Eigen::VectorXd off = theta_;
   off[0] *= 0.9;
   GapMonitor m = monitor({off, {}});
@@ -182,7 +182,7 @@ TEST_F(Gap, ThatLastsIsAnEventOnceAndIsClearedByTheRightModel) {
   EXPECT_EQ(seen.news.back().id, raised.id);
 }
 
-TEST_F(Gap, IsNotLookedForWhereNoiseIsAsLarge) {
+TEST_F(Gap, IsNotComputedIfNoiseIsAsLarge) {
   Eigen::VectorXd off = theta_;
   off[0] *= 0.9;
   GapMonitor m = monitor({off, {}});
@@ -195,7 +195,7 @@ TEST_F(Gap, IsNotLookedForWhereNoiseIsAsLarge) {
   EXPECT_TRUE(seen.news.empty());
 }
 
-TEST_F(Gap, OfALostChannelIsOfTheOthers) {
+TEST_F(Gap, LeavesOutALostChannel) {
   std::vector<SampleSet> sets = measured(kNoise);
   for (std::size_t i = 4000; i < 7000; ++i) sets[i].accel[1] = kNaN;
   GapMonitor m = monitor({theta_, {}});
@@ -212,7 +212,7 @@ TEST_F(Gap, OfALostChannelIsOfTheOthers) {
   EXPECT_TRUE(std::isfinite(at(82).axis_nrmse[1]));
 }
 
-TEST_F(Gap, WithoutTheBaseWaitsUntilNothingIsLeftOfItsLoss) {
+TEST_F(Gap, RestartsAfterALossOfTheBaseHasDecayed) {
   std::vector<SampleSet> sets = measured(kNoise / 10);
   for (std::size_t i = 4000; i < 4100; ++i) sets[i].accel[0] = kNaN;
   GapMonitor m = monitor({theta_, {}});
@@ -230,7 +230,7 @@ TEST_F(Gap, WithoutTheBaseWaitsUntilNothingIsLeftOfItsLoss) {
   EXPECT_TRUE(any);
 }
 
-TEST_F(Gap, GoesOnBitByBitFromItsState) {
+TEST_F(Gap, ContinuesBitByBitFromItsState) {
   Effect hysteresis = make_effect(EffectKind::bilinear_hysteresis, {PlaceKind::frame, 2, 0});
   hysteresis.set("kh_npm", 5e3);
   hysteresis.set("dy_m", 2e-3);
@@ -259,7 +259,7 @@ TEST_F(Gap, GoesOnBitByBitFromItsState) {
   }
 }
 
-TEST_F(Gap, LearnsItsModelWhenNoneIsGiven) {
+TEST_F(Gap, LearnsAModelByDefault) {
   PipelineConfig config;
   config.structure = structure_;
   config.axes = axes_;

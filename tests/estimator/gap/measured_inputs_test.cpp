@@ -157,7 +157,7 @@ class MeasuredInput : public testing::Test {
   std::vector<ResponseChannel> channels_;
 };
 
-TEST_F(MeasuredInput, OfABaseThatTurnsIsNoGap) {
+TEST_F(MeasuredInput, ATurningBaseGivesNoGap) {
   turn_in_plan();
   const auto sets = measured(0.05, 0);
   EXPECT_LT(last(sets, axes_, 0).nrmse, kSchemeError);
@@ -165,14 +165,14 @@ TEST_F(MeasuredInput, OfABaseThatTurnsIsNoGap) {
 }
 
 /// An effect of size 0 selects the nonlinear scheme.
-TEST_F(MeasuredInput, DrivesABuildingWithLawsAlike) {
+TEST_F(MeasuredInput, DrivesTheNonlinearSchemeToo) {
   turn_in_plan();
   Effect none = make_effect(EffectKind::cubic_stiffness, {PlaceKind::frame, 1, 0});
   none.set("k3_npm3", 0);
   EXPECT_LT(last(measured(0.05, 0), axes_, 0, {none}).nrmse, kSchemeError);
 }
 
-TEST_F(MeasuredInput, OfABaseThatRocksIsNoGap) {
+TEST_F(MeasuredInput, ARockingBaseGivesNoGap) {
   Eigen::VectorXd influence(structure_.degrees_of_freedom());
   influence << kHeight_m, kHeight_m, 0, 0, 2 * kHeight_m, 2 * kHeight_m, 0, 0;
   turn(influence);
@@ -188,7 +188,7 @@ TEST_F(MeasuredInput, OfABaseThatRocksIsNoGap) {
   EXPECT_GT(last(sets, unaware(axes_.size() - 2), 0).nrmse, kUnaware);
 }
 
-TEST_F(MeasuredInput, OfAShakerIsNoGap) {
+TEST_F(MeasuredInput, AShakerGivesNoGap) {
   lever_ = Eigen::VectorXd::Zero(structure_.degrees_of_freedom());
   lever_[structure_.dof(2, 1)] = 1;
   add(at_base("X", kWide_m / 2, kDeep_m / 2, 0), {ground_x()});
@@ -204,7 +204,7 @@ TEST_F(MeasuredInput, OfAShakerIsNoGap) {
 }
 
 /// One of the base's axes fails: the others still measure its directions but not how it turns.
-TEST_F(MeasuredInput, OfALostAxisIsDoneWithoutWhereOthersShowItsDirection) {
+TEST_F(MeasuredInput, ALostAxisIsReplacedByOthersOfItsDirection) {
   constexpr std::size_t kFails = 2000;
   turn_in_plan();
   std::vector<SampleSet> sets = measured(1e-4, 0), blind = sets;
@@ -218,7 +218,7 @@ TEST_F(MeasuredInput, OfALostAxisIsDoneWithoutWhereOthersShowItsDirection) {
   EXPECT_LT(last(blind, axes_, 0).end, blind[kFails].time);
 }
 
-TEST_F(MeasuredInput, IsAsNoisyAsTheFloorSays) {
+TEST_F(MeasuredInput, NoiseMatchesTheNoiseFloor) {
   constexpr double kNoise = 5e-3;
   turn_in_plan();
   const GapWindow gap = last(measured(0.05, kNoise), axes_, kNoise);

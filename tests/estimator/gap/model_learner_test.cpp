@@ -35,7 +35,7 @@ struct Learning {
   int taken = 0;
 };
 
-TEST(ModelLearner, TakesTheAskedTimeAndTwoWindowsMore) {
+TEST(ModelLearner, TakesTheRequestedTimePlusTwoWindows) {
   const Learning l(1000, 100);
   ASSERT_TRUE(l.learned);
   EXPECT_EQ(l.taken, 14);
@@ -43,7 +43,7 @@ TEST(ModelLearner, TakesTheAskedTimeAndTwoWindowsMore) {
   EXPECT_TRUE(std::isnan(l.learner.learned()[1].value));
 }
 
-TEST(ModelLearner, HasNothingOfWhatCameAfterAChange) {
+TEST(ModelLearner, LeavesOutWindowsAfterAChange) {
   for (const int change_at : {5, 8, 11, 12}) {
     const Learning l(change_at, 100);
     ASSERT_TRUE(l.learned) << change_at;
@@ -51,7 +51,7 @@ TEST(ModelLearner, HasNothingOfWhatCameAfterAChange) {
   }
 }
 
-TEST(ModelLearner, BeginsAgainBehindAChangeThatComesTooSoon) {
+TEST(ModelLearner, RestartsAfterAnEarlyChange) {
   for (const int change_at : {1, 2}) {
     const Learning l(change_at, 100);
     ASSERT_TRUE(l.learned);
@@ -60,7 +60,7 @@ TEST(ModelLearner, BeginsAgainBehindAChangeThatComesTooSoon) {
   }
 }
 
-TEST(ModelLearner, OfADayIsBoundedAndNoLessExact) {
+TEST(ModelLearner, IsBoundedAndExactOverADay) {
   const Learning l(1 << 30, 20000, 86400);
   ASSERT_TRUE(l.learned);
   EXPECT_NEAR(l.learner.learned()[0].value, 1, 4 * kError / std::sqrt(86400 / kWindow_s));

@@ -57,7 +57,7 @@ TEST(AxisGuard, LeavesHealthyAxesAlone) {
   }
 }
 
-TEST(AxisGuard, TakesOutEverySampleOfAnAxisThatSticksWhileItMoved) {
+TEST(AxisGuard, RemovesEverySampleOfAnAxisThatSticksDuringMotion) {
   const int from = 400, to = 700;
   const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes), [&](int t, int a) {
     return moving(a == 1 && t >= from && t < to ? from : t, a);
@@ -67,7 +67,7 @@ TEST(AxisGuard, TakesOutEverySampleOfAnAxisThatSticksWhileItMoved) {
     EXPECT_EQ(r.taken_out[static_cast<std::size_t>(t)][1], t >= from && t < to) << t;
 }
 
-TEST(AxisGuard, AnAxisDeadFromTheStartIsFoundByTheOthers) {
+TEST(AxisGuard, FindsAnAxisDeadFromTheStartByTheOthers) {
   const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes),
                         [](int t, int a) { return a == 2 ? 0.25 : moving(t, a); });
   EXPECT_GT(r.stuck[2], kInstants - 200);
@@ -106,7 +106,7 @@ TEST(AxisGuard, ZerosBeforeAndAfterAProcessedRecordAreNotStuck) {
   EXPECT_EQ(one_by_one.stuck, kNone);
 }
 
-TEST(AxisGuard, ARecordThatStopsInItsMotionHasNoSamplesForHalfASecond) {
+TEST(AxisGuard, ARecordThatStopsDuringMotionLosesHalfASecond) {
   const int end = 700, half_second = 50;
   const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes),
                         [](int t, int a) { return t < end ? moving(t, a) : 0; });
@@ -142,7 +142,7 @@ TEST(AxisGuard, ASensorCoarserThanTheQuietMotionIsNotStuck) {
   EXPECT_EQ(r.missing, kNone);
 }
 
-TEST(AxisGuard, ASensorThatSticksBeforeTheShakingIsFoundWithinASecondOfIt) {
+TEST(AxisGuard, FindsASensorThatSticksBeforeTheShakingWithinASecond) {
   const int onset = 500;
   const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes), [](int t, int a) {
     const double amplitude = t < onset ? 0.004 : 2.0;
@@ -154,14 +154,14 @@ TEST(AxisGuard, ASensorThatSticksBeforeTheShakingIsFoundWithinASecondOfIt) {
   EXPECT_FALSE(r.taken_out[onset - 10][1]);
 }
 
-TEST(AxisGuard, AnAxisAloneInItsDirectionHasTheOthersForNeighbours) {
+TEST(AxisGuard, ComparesASingleAxisWithOtherDirections) {
   const std::vector<AxisGuard::Axis> axes = {{0, 0}, {0, 0}, {0, 1}};
   const Guarded r =
       run(axes, [](int t, int a) { return a == 2 && t >= 400 && t < 700 ? 0.5 : moving(t, a); });
   EXPECT_EQ(r.stuck, (std::vector<std::int64_t>{0, 0, 300}));
 }
 
-TEST(AxisGuard, TakesOutWhatTouchesTheConfiguredRangeAndItsNeighbours) {
+TEST(AxisGuard, RemovesSamplesAtTheConfiguredRangeAndTheirNeighbours) {
   std::vector<AxisGuard::Axis> axes(kAxes);
   axes[1].range = 1.5;
   const Guarded r =
@@ -175,7 +175,7 @@ TEST(AxisGuard, TakesOutWhatTouchesTheConfiguredRangeAndItsNeighbours) {
   }
 }
 
-TEST(AxisGuard, LearnsARangeNobodyConfigured) {
+TEST(AxisGuard, LearnsARangeIfNoneIsConfigured) {
   const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes),
                         [](int t, int a) { return std::min(moving(t, a), a == 0 ? 1.2 : 9.0); });
   for (int t = kInstants / 2; t < kInstants; ++t) {  // the guard must see its resolution first

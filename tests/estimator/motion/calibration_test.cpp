@@ -19,7 +19,7 @@ SensorAxis axis(Direction direction) {
   return a;
 }
 
-TEST(Calibration, OffsetThenPolarity) {
+TEST(Calibration, AppliesOffsetThenPolarity) {
   SensorAxis a = axis(Direction::x);
   a.offset = 0.2;
   a.polarity = -1;
@@ -28,7 +28,7 @@ TEST(Calibration, OffsetThenPolarity) {
   EXPECT_NEAR(accel[0], -1.0, kRounding);
 }
 
-TEST(Calibration, TakesGravityOffATiltedAxis) {
+TEST(Calibration, RemovesGravityFromATiltedAxis) {
   for (const double polarity : {1.0, -1.0}) {
     SensorAxis a = axis(Direction::x);
     a.tilt = 0.05;

@@ -81,7 +81,7 @@ TEST(DerivativeTriple, ConstantsAndRampsAreExact) {
   EXPECT_NEAR(ramp2, 0, 1e-12 * rate);
 }
 
-TEST(DerivativeTriple, AdvanceUndoesAFractionOfASample) {
+TEST(DerivativeTriple, AdvanceShiftsByAFractionOfASample) {
   const double rate = 100;
   for (const double advance : {-0.5, -0.2, 0.5}) {
     const DerivativeTriple t = matched_triple(rate, advance), plain = matched_triple(rate);

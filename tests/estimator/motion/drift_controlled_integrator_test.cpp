@@ -75,7 +75,7 @@ TEST(DriftControlledIntegrator, IsValidOnceItsTapsAreFull) {
   }
 }
 
-TEST(DriftControlledIntegrator, LostSampleInvalidatesItsAxisAloneUntilRefilled) {
+TEST(DriftControlledIntegrator, ALostSampleInvalidatesOnlyItsAxisUntilRefilled) {
   DriftControlledIntegrator filter = make_filter(2), fresh = make_filter(1);
   const int length = matched_triple(kRate).length();
   for (int i = 0; i < 100; ++i) filter.push({std::sin(0.2 * i), std::cos(0.1 * i)});
@@ -96,7 +96,7 @@ TEST(DriftControlledIntegrator, LostSampleInvalidatesItsAxisAloneUntilRefilled) 
   }
 }
 
-TEST(DriftControlledIntegrator, ResetIsANewFilter) {
+TEST(DriftControlledIntegrator, ResetEqualsANewFilter) {
   DriftControlledIntegrator used = make_filter(1), fresh = make_filter(1);
   for (int i = 0; i < 77; ++i) used.push({std::sin(0.9 * i)});
   used.reset();

@@ -30,7 +30,7 @@ double cubic(double t) {
   return 1 + t * (0.5 + t * (-0.3 + 0.04 * t));
 }
 
-TEST(LostSampleFiller, GivesTwoInstantsLaterAndDrainsTheRest) {
+TEST(LostSampleFiller, DelaysByTwoInstantsAndDrainsTheRest) {
   LostSampleFiller filler({1});
   EXPECT_EQ(filler.push(set_of(0, {1})), nullptr);
   EXPECT_EQ(filler.push(set_of(1, {2})), nullptr);

@@ -29,7 +29,7 @@ TEST(NoiseMeter, SeesWhiteNoiseUnderAThousandTimesStrongerMotion) {
   EXPECT_NEAR(meter.density(1) / (3 * kDensity), 1, kTolerance);
 }
 
-TEST(NoiseMeter, AMissingSampleIsNoStep) {
+TEST(NoiseMeter, IgnoresAMissingSample) {
   NoiseMeter meter(1, kRate_hz);
   Random random(4);
   for (int t = 0; t < 2000; ++t)

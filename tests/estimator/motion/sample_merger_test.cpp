@@ -72,7 +72,7 @@ TEST(SampleMerger, SilentAxisHoldsUpOnceAndRecovers) {
   for (int i = 10; i < 16; ++i) b.push(i, 0, i);
   EXPECT_EQ(b.out.size(), 10u) << "waits for the lateness";
   b.push(16, 0, 16);
-  EXPECT_EQ(b.out.size(), 17u) << "then for nobody";
+  EXPECT_EQ(b.out.size(), 17u) << "then it waits for no axis";
   b.push(17, 0, 17);
   EXPECT_EQ(b.out.size(), 18u);
   EXPECT_TRUE(std::isnan(b.out[17].accel[1]));
@@ -135,7 +135,7 @@ TEST(SampleMerger, TimeRunningBackwardsAnchorsAnew) {
   EXPECT_GT(b.out[20].index, 20) << "a jump: readers see the interruption";
 }
 
-TEST(SampleMerger, LongGapIsAJumpOfTheIndex) {
+TEST(SampleMerger, ALongGapSkipsIndices) {
   Bench b;
   for (int i = 0; i < 20; ++i) b.both(i);
   for (int i = 0; i < 20; ++i) b.both(100000 + i);
@@ -145,7 +145,7 @@ TEST(SampleMerger, LongGapIsAJumpOfTheIndex) {
   EXPECT_EQ(b.out.back().accel[0], 100019);
 }
 
-TEST(SampleMerger, ShortGapIsEmptyInstants) {
+TEST(SampleMerger, AShortGapGivesEmptyInstants) {
   Bench b;
   for (int i = 0; i < 20; ++i) b.both(i);
   for (int i = 27; i < 60; ++i) b.both(i);
@@ -172,7 +172,7 @@ TEST(SampleMerger, ClockOffByAThousandPpmIsFollowed) {
   }
 }
 
-TEST(SampleMerger, FinishGivesOutWhatIsOpen) {
+TEST(SampleMerger, FinishDeliversOpenInstants) {
   Bench b;
   b.both(0);
   b.push(1, 0, 1);

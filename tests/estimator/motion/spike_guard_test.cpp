@@ -60,7 +60,7 @@ Places row(int from, int to, int axis) {
   return out;
 }
 
-TEST(SpikeGuard, OneOrAFewSamplesFarOutOnOneAxisAreTakenOut) {
+TEST(SpikeGuard, RemovesAFewOutlyingSamplesOnOneAxis) {
   for (const int length : {1, 2, 3, 100})
     for (const double size : {0.1, -3.0, 150.0}) {
       const Guarded g = run([&](int t, int axis) {
@@ -71,7 +71,7 @@ TEST(SpikeGuard, OneOrAFewSamplesFarOutOnOneAxisAreTakenOut) {
     }
 }
 
-TEST(SpikeGuard, AnOnsetIsSoundHoweverQuietItWasBefore) {
+TEST(SpikeGuard, KeepsAnOnsetAfterAnyQuiet) {
   const auto onset = [](int t, int axis) {  // floors follow the base
     const int since = t - kAt - axis;
     return since < 0 ? 0.0 : 3 * std::cos(0.3 * since);
@@ -79,7 +79,7 @@ TEST(SpikeGuard, AnOnsetIsSoundHoweverQuietItWasBefore) {
   EXPECT_TRUE(run(onset).absurd.empty());
 }
 
-TEST(SpikeGuard, ATapThatOtherAxesFeelIsSound) {
+TEST(SpikeGuard, KeepsATapThatOtherAxesFeel) {
   const auto tap = [](int t, int axis) {
     if (t < kAt || axis == 3) return 0.0;
     const double ring = std::exp(-0.1 * (t - kAt)) * std::cos(0.9 * (t - kAt));
@@ -88,14 +88,14 @@ TEST(SpikeGuard, ATapThatOtherAxesFeelIsSound) {
   EXPECT_TRUE(run(tap).absurd.empty());
 }
 
-TEST(SpikeGuard, AnImpactThatRingsDownIsSound) {
+TEST(SpikeGuard, KeepsAnImpactThatRingsDown) {
   const auto impact = [](int t, int axis) {
     return axis == 1 && t >= kAt ? std::pow(-0.5, t - kAt) * 0.08 : 0;
   };
   EXPECT_TRUE(run(impact).absurd.empty());
 }
 
-TEST(SpikeGuard, APulseThatRisesOverSomeSamplesIsSound) {
+TEST(SpikeGuard, KeepsAPulseThatRisesOverSomeSamples) {
   // An impact against a stop on one floor of a moving building (case-040).
   const std::vector<double> rise{0.3, 1.2, 3.2, 4.8, 5.9, 6.5, 6.4, 5.8, 4.5, 3.0, 1.5, 0.5};
   const auto pulse = [&](int t, int axis) {
@@ -106,7 +106,7 @@ TEST(SpikeGuard, APulseThatRisesOverSomeSamplesIsSound) {
   EXPECT_TRUE(run(pulse).absurd.empty());
 }
 
-TEST(SpikeGuard, AJerkOfAShakingTableIsSound) {
+TEST(SpikeGuard, KeepsAJerkOfAShakingTable) {
   // A real impact at the base alone: mini_shake_table_xsens_2025, Northridge.
   const std::vector<double> jerk{0.575, 3.336, 0.0001, -0.320, 2.086, -0.712, -0.606, -0.011};
   EXPECT_TRUE(run([&](int t, int axis) {
@@ -115,14 +115,14 @@ TEST(SpikeGuard, AJerkOfAShakingTableIsSound) {
               }).absurd.empty());
 }
 
-TEST(SpikeGuard, WhatAlternatesBeyondMotionDoesNotRing) {
+TEST(SpikeGuard, RemovesAlternatingSpikes) {
   const Guarded g = run([&](int t, int axis) {
     return axis == 1 && t >= kAt && t < kAt + 40 && t % 2 == 0 ? 50 : 0;
   });
   EXPECT_EQ(g.counted, (std::vector<std::int64_t>{0, 20, 0, 0}));
 }
 
-TEST(SpikeGuard, WhatStaysIsAnotherBias) {
+TEST(SpikeGuard, KeepsAStepOfTheBias) {
   const Guarded g = run([](int t, int axis) { return axis == 1 && t >= kAt ? 5.0 : 0; });
   const auto longest = static_cast<int>(SpikeGuard::kLongest_s * kRate_hz);
   EXPECT_GT(g.counted[1], 0);
@@ -130,11 +130,11 @@ TEST(SpikeGuard, WhatStaysIsAnotherBias) {
   EXPECT_LT(g.absurd.rbegin()->first, kAt + longest + 2);
 }
 
-TEST(SpikeGuard, AnAxisAloneIsNotContradicted) {
+TEST(SpikeGuard, KeepsSpikesOfASingleAxis) {
   EXPECT_TRUE(run([](int t, int) { return t == kAt ? 5.0 : 0; }, 1).absurd.empty());
 }
 
-TEST(SpikeGuard, StepsOfACoarseSensorAreSound) {
+TEST(SpikeGuard, KeepsStepsOfACoarseSensor) {
   // With a resolution of 40 times the noise, the value mostly stays, then goes one step and back.
   constexpr double kStep = 40 * kNoise;
   const auto toggles = [](int t, int axis) {
@@ -143,7 +143,7 @@ TEST(SpikeGuard, StepsOfACoarseSensorAreSound) {
   EXPECT_TRUE(run(toggles, kAxes, kStep).absurd.empty());
 }
 
-TEST(SpikeGuard, MotionAfterAStuckSecondIsSound) {
+TEST(SpikeGuard, KeepsMotionAfterAStuckSecond) {
   const auto motion = [](int t, int axis) {
     return axis == 2 && t >= kAt && t < kAt + 100 ? -1e9 : std::sin(0.2 * t + axis);
   };
@@ -152,7 +152,7 @@ TEST(SpikeGuard, MotionAfterAStuckSecondIsSound) {
   EXPECT_EQ(g.counted, (std::vector<std::int64_t>{0, 0, 0, 0}));
 }
 
-TEST(SampleBound, StandsOnScaledValuesAboutTheOffset) {
+TEST(SampleBound, AppliesToScaledValuesAboutTheOffset) {
   SensorAxis axis;
   EXPECT_TRUE(sample_bound(axis).holds(-kMaxAccel));
   EXPECT_FALSE(sample_bound(axis).holds(std::nextafter(kMaxAccel, 1e3)));

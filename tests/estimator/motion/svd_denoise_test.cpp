@@ -28,7 +28,7 @@ Eigen::VectorXd noise(Eigen::Index size, double rms) {
   return out;
 }
 
-TEST(SvdDenoise, TakesThePapersNumbers) {
+TEST(SvdDenoise, UsesThePapersNumbers) {
   EXPECT_EQ(kPaper.interval_rows, 200);
   EXPECT_EQ(kPaper.intervals, 5);
   EXPECT_EQ(kPaper.norm_ratio, 0.98);
@@ -39,7 +39,7 @@ TEST(SvdDenoise, LeavesAMotionOfOneSingularValueAlone) {
   EXPECT_LT((svd_denoised(motion) - motion).cwiseAbs().maxCoeff(), kRounding);
 }
 
-TEST(SvdDenoise, TakesMostOfTheNoiseOffSuchAMotion) {
+TEST(SvdDenoise, RemovesMostNoiseFromSuchAMotion) {
   // One of five singular directions remains: a fifth of the noise's energy, and slightly more.
   constexpr double kLeft = 0.5;
   const Eigen::VectorXd motion = periodic(1000);

@@ -76,7 +76,7 @@ TEST(KernelsOfBins, InverseFactorWhitensTheNoise) {
   }
 }
 
-TEST(KernelsOfBins, WhatIsNotPositiveDefiniteIsNotFinite) {
+TEST(KernelsOfBins, GiveNanForAnIndefiniteMatrix) {
   std::vector<double> matrix(4 * kNumber, 0.0);
   for (int bin = 0; bin < kBins; ++bin) {
     matrix[static_cast<std::size_t>(bin)] = 1;                // (0, 0)

@@ -163,7 +163,7 @@ TEST(Kernels, PartialCholeskyIsFactorAndSchurComplement) {
   }
 }
 
-TEST(Kernels, GivenUpPivotLeavesTheOthersAlone) {
+TEST(Kernels, ARejectedPivotLeavesOthersAlone) {
   for (const int bad : {0, 1, 2, 3, 4, 6}) {
     const int front = 9, pivots = 7;
     Eigen::MatrixXd a = positive(front);
@@ -221,7 +221,7 @@ std::vector<double> symmetric_packed(int front, std::uint64_t seed) {
   return packed;
 }
 
-TEST(Kernels, SubtractProductIsThatOfTheWholeMatrix) {
+TEST(Kernels, SubtractProductMatchesTheWholeMatrix) {
   for (const int front : kFronts) {
     const int stride = padded(front);
     const auto packed = symmetric_packed(front, 21);

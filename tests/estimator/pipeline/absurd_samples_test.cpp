@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// No sample of any bit pattern, and no second of them, on any one channel, moves a published value
-// by more than its standard error for longer than its window lasts, or silences it for longer than
-// kMaxSilence_s, and every one that no sensor can have measured is counted.
+// Absurd samples of any bit pattern on one channel, single ones or a second of them, move no
+// published value by more than its standard error for longer than its window, and silence none for
+// longer than kMaxSilence_s. Every impossible sample is counted.
 
 #include <gtest/gtest.h>
 
@@ -24,17 +24,17 @@ namespace framewatch::estimator {
 namespace absurd_samples_test {
 
 constexpr double kMaxSilence_s = 10;
-constexpr double kAfterWindow_s = 1;  // what filters remember of the time before a window
-/// Standard errors, at any time: by 25 repaired samples in every window, or by a second of a
-/// channel that is not there, of which a window of the other samples knows nothing.
+constexpr double kAfterWindow_s = 1;  // memory of the filters before a window
+/// Standard errors, at any time: caused by 25 repaired samples in every window, or by a second
+/// without a channel.
 constexpr double kMaxMovedByLosses = 2;
-/// Standard errors of windows of other lengths, whose errors are of the main window's blocks.
+/// Standard errors of windows of other lengths, whose errors come from the main window's blocks.
 constexpr double kMaxMovedOfOthers = 4;
 constexpr double kRate_hz = 100;
 constexpr int kFirst = 20 * static_cast<int>(kRate_hz);  // instant: everything is published
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Samples put in the place of others.
+/// Samples that replace others.
 struct Attack {
   int instant, axis;
   std::vector<double> values;  ///< of successive instants
@@ -79,7 +79,7 @@ class AbsurdSamples : public testing::TestWithParam<bool> {
     return out;
   }
 
-  /// Whether the window holds a sample of an attack.
+  /// Returns true if the window holds a sample of an attack.
   static bool holds(const WindowEstimate& e, const std::vector<Attack>& attacks) {
     const double end_s = 1e-6 * static_cast<double>(to_microseconds(e.end));
     return std::any_of(attacks.begin(), attacks.end(), [&](const Attack& a) {
@@ -89,8 +89,9 @@ class AbsurdSamples : public testing::TestWithParam<bool> {
     });
   }
 
-  /// Values may be off in windows that hold an absurd sample when `spared`; in others by more than
-  /// their standard error for as long as a window lasts, and by `most_moved` of them at no time.
+  /// In windows that hold an absurd sample, values may be wrong if `spared`. In others they may
+  /// differ by more than their standard error for at most a window's length, and never by more
+  /// than `most_moved` of them.
   void expect_unmoved(const Said& said, const std::vector<Attack>& attacks, bool spared,
                       double most_moved) const {
     std::map<std::pair<int, std::size_t>, double> shown_s, first_moved_s;
@@ -142,7 +143,7 @@ class AbsurdSamples : public testing::TestWithParam<bool> {
   Said clean_;
 };
 
-/// Every exponent of a double, the all-zero and all-one ones too, with one sign or the other.
+/// Every exponent of a double, including all zeros and all ones, with either sign.
 std::vector<double> every_exponent(bool odd_negative) {
   std::vector<double> out;
   std::mt19937_64 random(22);
@@ -152,7 +153,7 @@ std::vector<double> every_exponent(bool odd_negative) {
   return out;
 }
 
-TEST_P(AbsurdSamples, BeyondTheBoundChangeNothingAtAll) {
+TEST_P(AbsurdSamples, BeyondTheBoundChangeNothing) {
   std::vector<double> values;
   const SampleBound bound = sample_bound({});
   for (const double value : every_exponent(GetParam()))
@@ -213,8 +214,8 @@ TEST_P(AbsurdSamples, ASecondOfThemLeavesNoTrace) {
   expect_unmoved(run(attacks), attacks, true, kMaxMovedByLosses);
 }
 
-/// Stamps of one channel that are off, once or for a second, silence nothing for long.
-TEST_P(AbsurdSamples, StampsOfOneChannelSilenceNothingForLong) {
+/// Wrong stamps of one channel, once or for a second, silence nothing for long.
+TEST_P(AbsurdSamples, StampsOfOneChannelSilenceOthersOnlyBriefly) {
   constexpr int kApart_s = 16, kAxis = 3;
   std::vector<std::pair<double, int>> attacks;  // seconds ahead, samples
   for (const double ahead_s : {0.3, 0.55, 0.8, 1.05, 10.0, 1e9, -0.3, -0.8, -1e9})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the estimator must reach on exact motion of the paper's buildings. The motion is the exact
-// response (first-order hold at 1 ms, band-limited, decimated), not the estimator's own scheme.
+// Accuracy requirements for exact motion of the paper's buildings. The motion is the exact
+// response (first-order hold at 1 ms, band-limited, decimated), not the estimator's scheme.
 
 #include <cmath>
 #include <ostream>

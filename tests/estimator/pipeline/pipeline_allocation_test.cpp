@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// After its construction a pipeline never asks the heap for anything, whatever the samples: Eigen
-// included. Counted by this program's own malloc in front of glibc's, or by a hook of the address sanitizer.
+// A constructed pipeline never allocates memory, for any samples, Eigen included. This program's
+// malloc in front of glibc's, or a hook of the address sanitizer, counts allocations.
 #include <atomic>
 #include <cstdlib>
 #include <memory>
@@ -17,7 +17,8 @@ std::atomic<long> allocations{0};
 
 extern "C" {
 #ifdef __SANITIZE_ADDRESS__
-int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
+int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*,
+                                                                  std::size_t),
                                               void (*free_hook)(const volatile void*));
 [[maybe_unused]] const int installed = __sanitizer_install_malloc_and_free_hooks(
     [](const volatile void*, std::size_t) { ++allocations; }, [](const volatile void*) {});
@@ -33,7 +34,7 @@ void* malloc(std::size_t size) {
 namespace framewatch::estimator {
 namespace {
 
-/// What a run of samples did; `delivered` says which came.
+/// Results of a run of samples; `delivered` selects samples.
 struct Watched {
   long allocations = 0;
   int values = 0;
@@ -64,7 +65,7 @@ TEST(PipelineAllocation, CountsNewAndEigen) {
   EXPECT_EQ(allocations - before, 2);
 }
 
-/// Warming up, estimating, and looking once a window whether the filters still fit.
+/// Warms up, estimates, and checks once per window whether the filters still fit.
 TEST(PipelineAllocation, SamplesAllocateNothing) {
   for (const bool small : {true, false}) {
     const Structure s = small ? test::table1() : test::table2();
@@ -78,9 +79,9 @@ TEST(PipelineAllocation, SamplesAllocateNothing) {
   }
 }
 
-TEST(PipelineAllocation, TuningTheFiltersAnewAllocatesNothing) {
+TEST(PipelineAllocation, RetuningTheFiltersAllocatesNothing) {
   const Structure s = test::table1();
-  PipelineConfig config = test::pipeline_config(s);  // guesses its design, far off
+  PipelineConfig config = test::pipeline_config(s);  // the guessed design is far off
   const Watched run = watch(config, test::shaken(s, test::table1_theta(), 100, 25, 0.01));
   EXPECT_EQ(run.allocations, 0);
   EXPECT_GT(run.values, 500);
@@ -98,7 +99,7 @@ TEST(PipelineAllocation, LossesGapsAndSilentAxesAllocateNothing) {
         if (t == 1400) return axis != 3;              // a single loss
         if (t >= 1500 && t < 1503) return axis != 7;  // a short one
         if (t >= 1600 && t < 1900) return axis != 5;  // a silent axis
-        return t < 2000 || t >= 2300;                 // nobody
+        return t < 2000 || t >= 2300;                 // no channel
       });
   EXPECT_EQ(run.allocations, 0);
   EXPECT_GT(run.values, 500);

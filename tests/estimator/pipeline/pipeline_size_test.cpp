@@ -75,7 +75,7 @@ PipelineConfig config_of(const Case& c) {
 
 class PipelineSizeOf : public testing::TestWithParam<Case> {};
 
-TEST_P(PipelineSizeOf, IsWhatAPipelineTakes) {
+TEST_P(PipelineSizeOf, EqualsTheMemoryOfAPipeline) {
   const PipelineConfig config = config_of(GetParam());
   for (const std::string& problem : problems(config)) ADD_FAILURE() << problem;
   const std::size_t before = allocated_bytes();

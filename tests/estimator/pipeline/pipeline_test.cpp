@@ -17,10 +17,10 @@ namespace pipeline_test {
 using test::PipelineRun;
 using test::run_pipeline;
 
-/// Filters that refill after the start: taps of the triple, at least.
+/// Instants until filters are refilled after the start: at least the triple's taps.
 constexpr int kTriple = 15;
 constexpr int kWindow = 500;
-/// Rows that a first value needs: four blocks of the window, a second.
+/// Rows needed for a first value: four blocks of the window, a second.
 constexpr int kWarmUp = 100;
 
 /// Two stories, 1x1 bay, eccentric: small and quick.
@@ -51,10 +51,10 @@ PipelineConfig small_config() {
   return config;
 }
 
-/// Rows that a start in motion costs an equation.
+/// Rows that a start in motion costs per equation.
 constexpr int kShapes = 4;
 
-/// Instants the rows take to be weighted by the noise that was measured.
+/// Instants until rows are weighted by the measured noise.
 constexpr int kTuning = 150;
 
 bool any_value(const WindowEstimate& e) {
@@ -93,13 +93,13 @@ TEST(Pipeline, GivesNoValueBeforeItsWarmUp) {
   EXPECT_LT(worst_frame_error(small(), run.estimates.back(), small_theta()), 0.02);
 }
 
-TEST(Pipeline, WindowTimesAreThoseOfItsSamples) {
+TEST(Pipeline, WindowTimesMatchTheirSamples) {
   const PipelineRun run = run_pipeline(small_config(), small_accel());
   for (std::size_t i = 0; i < run.estimates.size(); ++i) {
     const WindowEstimate& e = run.estimates[i];
     // The triple looks 7 samples back.
     ASSERT_EQ(to_microseconds(e.end), 10000 * (static_cast<std::int64_t>(i) + kTriple - 7));
-    // The window grows from a second to its length.
+    // The window grows from a second to its full length.
     if (e.rows == 0) {
       ASSERT_LT(static_cast<int>(i), kWarmUp);
       continue;
@@ -109,8 +109,8 @@ TEST(Pipeline, WindowTimesAreThoseOfItsSamples) {
   }
 }
 
-/// WHEN the design is far off, windows are held back until the filters are tuned, and come late
-/// then: every window of the motion is given once, at its time or late.
+/// WHEN the design is far off, windows are held back until the filters are tuned and then come
+/// late: every window of the motion is published once, on time or late.
 TEST(Pipeline, WindowsHeldBackWhileTuningComeLate) {
   PipelineConfig config = small_config();
   config.design *= 0.3;
@@ -176,7 +176,7 @@ TEST(Pipeline, HopOfSeveralRowsGivesTheSameWindowsLessOften) {
   }
 }
 
-TEST(Pipeline, AfterAnInterruptionValuesReturnAtOnceAndAreAsGood) {
+TEST(Pipeline, ValuesReturnAtOnceAfterAnInterruptionAndAreAsGood) {
   const int interrupted_at = 1200;
   const PipelineRun run = run_pipeline(small_config(), small_accel(), [&](int t, int) {
     return t < interrupted_at || t >= interrupted_at + 300;
@@ -192,7 +192,7 @@ TEST(Pipeline, AfterAnInterruptionValuesReturnAtOnceAndAreAsGood) {
     else
       ++without;
   }
-  // Rows from before it are still in the window: only the filters that fill are waited for.
+  // Older rows are still in the window, so only the filters must refill.
   EXPECT_LT(without, kTriple + kShapes + 5);
   EXPECT_LT(worst, 0.05);
 }
@@ -210,7 +210,7 @@ TEST(Pipeline, AfterALongInterruptionAValueComesWithinASecondOrTwo) {
   EXPECT_LE(without, kWarmUp + kTriple + kShapes + 10);
 }
 
-TEST(Pipeline, LostChannelTakesItsElementsAloneAndComesBack) {
+TEST(Pipeline, ALostChannelCostsOnlyItsElementsUntilItReturns) {
   const int lost = 5;  // story 2, frame y2
   const int from = 1200, to = 1450;
   const PipelineRun run = run_pipeline(small_config(), small_accel(), [&](int t, int axis) {
@@ -234,7 +234,7 @@ TEST(Pipeline, LostChannelTakesItsElementsAloneAndComesBack) {
       }
     }
   }
-  // Another frame of the building goes on all the time; the lost one's returns.
+  // Another frame of the building continues all the time; the lost one's values return.
   const auto far = static_cast<std::size_t>(*table.find("kx_1_y1"));
   const auto near = static_cast<std::size_t>(*table.find("kx_2_y2"));
   for (const WindowEstimate& e : run.estimates)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is published when little moves, when the sensors are biased, and of buildings nobody chose.
-// framewatch reproduce measures the same on more motions (docs/accuracy.md).
+// Tests published values under little motion, biased sensors and random buildings. framewatch
+// reproduce measures the same on more motions (docs/accuracy.md).
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace robustness_test {
 
 constexpr double kMaxWrong = 0.05;         // of the published k off by more than 5 %
 constexpr double kMaxChangeByBias = 1e-4;  // of any k
-constexpr double kSilence_h = 0.1;         // of nothing but noise; reproduce listens for an hour
+constexpr double kSilence_h = 0.1;         // of pure noise; reproduce runs an hour of it
 constexpr double kRandomMedian[] = {0.005, 0.05, 0.03};  // k, G, c of random buildings, 1 % noise
 constexpr double kMinCoverage = 0.85;  // few motions and overlapping windows: a coarse check
 
@@ -56,7 +56,7 @@ TEST(RandomBuildings, AreIdentifiedLikeThePapers) {
   }
 }
 
-TEST(PaperMethod, IsFarFromOursOnTheSameMotions) {
+TEST(PaperMethod, IsFarLessExactOnTheSameMotions) {
   constexpr double kTimesWorse = 5;
   const daemon::AccuracyCase c = daemon::accuracy_cases().front();
   const daemon::AccuracyRow row = daemon::study_accuracy(c, 2, daemon::Workers(1));

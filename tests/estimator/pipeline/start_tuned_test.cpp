@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A pipeline that is given its tuning loses no window while it finds it.
+// A pipeline with a given tuning loses no window to find it.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -17,7 +17,7 @@ namespace start_tuned_test {
 constexpr int kRows = 500;  // of a whole window
 constexpr double kRate_hz = 100, kSeconds = 25;
 constexpr double kSoft = 0.4;       // design over truth
-constexpr double kSooner_s = 1;     // at least, than a pipeline that has to find its tuning
+constexpr double kSooner_s = 1;     // speed-up at least, over a pipeline that must find its tuning
 constexpr double kMaxError = 0.02;  // of a frame's stiffness in the first windows; noise 1 %
 
 struct Tower {
@@ -79,7 +79,7 @@ TEST(StartTuned, PublishesFromTheFirstFullWindowOn) {
   EXPECT_LT(second.worst, kMaxError);
 }
 
-TEST(StartTuned, WhatWasNotFoundRightIsOnlyWhereItBegins) {
+TEST(StartTuned, UnconfirmedTuningIsOnlyAStart) {
   Tuning start = *run({}).tuning;
   start.found_right = false;
   const Seen seen = run(start);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A pipeline that takes over another one's state goes on bit by bit as that one does, wherever the
-// input is cut. The state is loaded into a pipeline that has already seen other motion, so that a
-// member archive() forgets has another value than the one it should.
+// A pipeline that loads another one's state continues bit by bit like it, wherever the input is
+// cut. The state is loaded into a pipeline that has seen other motion, so that a member that
+// archive() forgets has a wrong value.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ constexpr int kOtherMotion = 420;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Everything a pipeline said, as its state has it: bit by bit.
+/// All output of a pipeline, bit by bit, in the form of its state.
 struct Said {
   std::vector<Bytes> estimates;
   void operator()(WindowEstimate estimate) {
@@ -35,7 +35,7 @@ struct Said {
   }
 };
 
-/// The pipeline under test with all estimates it gave.
+/// The pipeline under test with all its estimates.
 struct Watched {
   explicit Watched(const PipelineConfig& config) : pipeline(config) {}
   void push(const AccelSample& sample) {
@@ -58,10 +58,10 @@ class State : public testing::TestWithParam<bool> {
     for (SensorAxis& axis : config_.axes) axis.noise_density = GetParam() ? 1e-3 : 0;
   }
 
-  /// Samples of an instant, with what goes wrong in a long night: lost ones, a node that fails for
-  /// a while, one that is stuck, one that clips, an interruption, late and repeated samples.
+  /// Samples of an instant with the faults of a long night: lost ones, a node that fails for a
+  /// while, a stuck one, a clipping one, an interruption, late and repeated samples.
   void push(Watched& watched, int t, int from_axis, int to_axis, int shift = 0) const {
-    if (t >= 690 && t < 770) return;  // nobody
+    if (t >= 690 && t < 770) return;  // no channel
     for (int axis = from_axis; axis < to_axis; ++axis) {
       if ((t * 31 + axis) % 97 == 0) continue;
       if (axis == 3 && t >= 520 && t < 560) continue;
@@ -75,7 +75,7 @@ class State : public testing::TestWithParam<bool> {
   }
   int axes() const { return static_cast<int>(config_.axes.size()); }
 
-  /// Cut after `axis` axes of an instant.
+  /// Cuts after `axis` axes of an instant.
   struct Cut {
     int t, axis;
     Bytes state;
@@ -87,7 +87,7 @@ class State : public testing::TestWithParam<bool> {
                                         kInstants / kRate_hz, GetParam() ? 0.01 : 0.03);
 };
 
-TEST_P(State, CutAnywhereGoesOnBitByBit) {
+TEST_P(State, ContinuesBitByBitFromAnyInstant) {
   std::vector<Cut> cuts;
   for (int t = 0; t < kInstants - kCompared; t += t < 480 ? 11 : 23)
     cuts.push_back({t, (t * 5) % axes(), {}, 0});
@@ -137,7 +137,7 @@ TEST_P(State, CutAnywhereGoesOnBitByBit) {
   }
 }
 
-TEST_P(State, ReadsBackWhatItWrote) {
+TEST_P(State, ReadsBackItsBytes) {
   Watched first(config_);
   for (int t = 0; t < 500; ++t) push(first, t, 0, axes());
   StateWriter once;
@@ -154,7 +154,7 @@ TEST_P(State, ReadsBackWhatItWrote) {
 INSTANTIATE_TEST_SUITE_P(Noise, State, testing::Bool(),
                          [](const auto& given) { return given.param ? "configured" : "measured"; });
 
-TEST(StateReader, RefusesWhatIsTooShortOrOfAnotherBuilding) {
+TEST(StateReader, RefusesTruncatedAndForeignStates) {
   const PipelineConfig config = test::pipeline_config(test::table1(), kRate_hz);
   Watched one(config);
   StateWriter writer;

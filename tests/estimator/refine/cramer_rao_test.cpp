@@ -72,7 +72,7 @@ TEST(CramerRao, IsInfiniteForPanelsThatDoNotShear) {
   EXPECT_GT(b.std_error[table.panel_stiffness(1, 0)], 1e3 * theta[table.panel_stiffness(1, 0)]);
 }
 
-TEST(CramerRao, RefusesWhatIsNoStretch) {
+TEST(CramerRao, RefusesAnInvalidStretch) {
   const auto good = table1(0.01);
   test::ExactRecord segment = good;
   segment.accel_abs.conservativeResize(40, Eigen::NoChange);

@@ -43,7 +43,7 @@ Eigen::VectorXd relative_error(const TallRecord& record, const Refinement& r) {
   return (r.theta.cwiseQuotient(record.truth).array() - 1).abs();
 }
 
-TEST(GroupLikelihood, ItsGradientIsThatOfItsMisfit) {
+TEST(GroupLikelihood, GradientMatchesTheMisfit) {
   constexpr double kStep = 1e-4, kLimit = 1e-5;
   TallTrial trial = six_stories();
   trial.believed_bending_nmprad = 5e11;
@@ -79,7 +79,7 @@ TEST(GroupLikelihood, ExactMotionGivesTheTruth) {
   EXPECT_LT(error.tail(3).maxCoeff(), kDamping);
 }
 
-TEST(GroupLikelihood, ErrorsAreThoseItStates) {
+TEST(GroupLikelihood, StatesItsErrorsRightly) {
   constexpr int kDraws = 12;
   constexpr double kMin = 0.6, kMax = 1.5;  // of 72 errors over their standard error
   double stiffness = 0, damping = 0;
@@ -120,7 +120,7 @@ TEST(GroupLikelihood, FindsTheBending) {
   EXPECT_LT(relative_error(record, r)[krx], 0.05);
 }
 
-TEST(GroupLikelihood, SaysWhyItCannot) {
+TEST(GroupLikelihood, ReportsWhyItCannotFit) {
   const TallRecord record = tall_record(six_stories());
   EXPECT_EQ(refine(record, 1000, 10).status, RefineStatus::too_short);
   TallRecord holed = record;

@@ -67,7 +67,7 @@ TEST(MaxLikelihood, ExactMotionGivesTheTruth) {
   EXPECT_LT(error.head(20).maxCoeff(), 0.1 * kLimit);
 }
 
-TEST(MaxLikelihood, ScatterIsTheBound) {
+TEST(MaxLikelihood, ScatterMatchesTheBound) {
   // GIVEN one motion and 60 draws of 2 % noise: a scatter is known to 9 % of itself
   constexpr int kDraws = 60;
   constexpr double kMin = 0.75, kMax = 1.4;  // of each parameter
@@ -126,7 +126,7 @@ TEST(MaxLikelihood, TableOneAtOnePercentReachesTheBound) {
   EXPECT_GT(middle, 0.75 * least_middle);
 }
 
-TEST(MaxLikelihood, RigidFloorsNeedNotHaveAllSensors) {
+TEST(MaxLikelihood, RigidFloorsMayLackSensors) {
   const Building b = two_stories(FloorModel::rigid);
   auto segment = test::exact_stretch(b.structure, b.truth, test::oblique_motion(2), 0.01);
   Eigen::MatrixXd measured = test::with_noise(segment, 5);
@@ -146,7 +146,7 @@ TEST(MaxLikelihood, RigidFloorsNeedNotHaveAllSensors) {
   EXPECT_GT(some.bound.head(8).sum(), all.bound.head(8).sum());
 }
 
-TEST(MaxLikelihood, UnknownNoiseIsTakenFromTheMisfit) {
+TEST(MaxLikelihood, EstimatesUnknownNoiseFromTheMisfit) {
   const Building b = two_stories();
   auto segment = test::exact_stretch(b.structure, b.truth, test::oblique_motion(2), 0.02);
   const Eigen::MatrixXd measured = test::with_noise(segment, 9);
@@ -171,7 +171,7 @@ TEST(MaxLikelihood, PureNoiseIsQuiet) {
   EXPECT_EQ(refine(b, segment, segment.accel_abs, true, 4).status, RefineStatus::quiet);
 }
 
-TEST(MaxLikelihood, RefusesWhatIsNoStretch) {
+TEST(MaxLikelihood, RefusesAnInvalidStretch) {
   const Building b = two_stories();
   const auto good = test::exact_stretch(b.structure, b.truth, test::oblique_motion(2), 0.02);
   auto bad = good;

@@ -24,7 +24,7 @@ TallTrial exact(double damping_off = 0) {
   return trial;
 }
 
-TEST(LeftOutFloor, IsKnownWhereTheModelIsRight) {
+TEST(LeftOutFloor, IsPredictedByTheRightModel) {
   constexpr double kLow = 2e-3, kAll = 0.02;
   const TallRecord record = tall_record(exact());
   const auto floors = leave_floors_out(record.config, record.truth, record.accel, kFirst, kEnd);
@@ -38,7 +38,7 @@ TEST(LeftOutFloor, IsKnownWhereTheModelIsRight) {
   }
 }
 
-TEST(LeftOutFloor, IsNearlyKnownWhereGroupsDifferInDamping) {
+TEST(LeftOutFloor, IsNearlyPredictedIfGroupsDifferInDamping) {
   constexpr double kLow = 0.05;  // inner modes ignore damping that is not proportional
   const TallRecord record = tall_record(exact(0.3));
   for (const LeftOutFloor& floor :
@@ -46,14 +46,14 @@ TEST(LeftOutFloor, IsNearlyKnownWhereGroupsDifferInDamping) {
     EXPECT_LT(floor.low_error, kLow) << floor.floor;
 }
 
-TEST(LeftOutFloor, ShowsThatTheModelIsWrong) {
+TEST(LeftOutFloor, ShowsAWrongModel) {
   const TallRecord record = tall_record(exact());
   const Eigen::VectorXd half = 0.5 * record.truth;
   const auto floors = leave_floors_out(record.config, half, record.accel, kFirst, kEnd);
   for (const LeftOutFloor& floor : floors) EXPECT_GT(floor.low_error, 0.05) << floor.floor;
 }
 
-TEST(LeftOutFloor, IsNotJudgedBySamplesThatAreMissing) {
+TEST(LeftOutFloor, IgnoresMissingSamples) {
   TallRecord record = tall_record(exact());
   record.accel(1500, 2) = kNaN;
   const auto floors = leave_floors_out(record.config, record.truth, record.accel, kFirst, kEnd);
@@ -64,7 +64,7 @@ TEST(LeftOutFloor, IsNotJudgedBySamplesThatAreMissing) {
     EXPECT_TRUE(std::isnan(floor.error));
 }
 
-TEST(SplineWeights, GoThroughThePlacesAndFollowAStraightLine) {
+TEST(SplineWeights, InterpolatePlacesAndStraightLines) {
   constexpr double kLimit = 1e-12;
   const std::vector<double> places{0, 1, 4, 6};
   const Eigen::Vector4d line(2, 5, 14, 20);

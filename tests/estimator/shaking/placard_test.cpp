@@ -13,7 +13,7 @@ namespace placard_test {
 constexpr double kExact = 1e-12;
 const Fragility kFrame{{0.005, 0.01, 0.03, 0.08}, {0.4, 0.4, 0.4, 0.4}};
 
-TEST(Fragility, IsAHalfAtTheMedianWhateverTheError) {
+TEST(Fragility, IsOneHalfAtTheMedianForAnyError) {
   for (const double error : {0.0, 0.001, 0.01})
     for (std::size_t state = 0; state < kDamageStates; ++state)
       EXPECT_NEAR(damage_probabilities(kFrame, kFrame.median[state], error)[state], 0.5, kExact);
@@ -66,13 +66,13 @@ TEST(Placard, FollowsTheWorstStory) {
   EXPECT_EQ(unsafe.state, DamageState::extensive);
 }
 
-TEST(Placard, RulesDecideWhereItBegins) {
+TEST(Placard, FollowsTheThresholds) {
   const std::vector<StoryDrift> one{drifted(1, 0.01)};
   EXPECT_EQ(placard_of(one, {0.49, 0.5}).placard, Placard::restricted);
   EXPECT_EQ(placard_of(one, {0.51, 0.5}).placard, Placard::inspected);
 }
 
-TEST(Placard, IsNeverBetterThanRestrictedWhereAStoryIsNotJudged) {
+TEST(Placard, IsAtBestRestrictedWithAnUnjudgedStory) {
   const PlacardChoice unknown = placard_of({drifted(1, 0.002), drifted(2, kNaN, kNaN)});
   EXPECT_EQ(unknown.placard, Placard::restricted);
   EXPECT_EQ(unknown.reason, PlacardReason::drift_unknown);
@@ -86,7 +86,7 @@ TEST(Placard, IsNeverBetterThanRestrictedWhereAStoryIsNotJudged) {
   EXPECT_EQ(placard_of({drifted(1, 0.002, kNaN)}).placard, Placard::restricted);
 }
 
-TEST(Placard, IsUnsafeByAKnownStoryThoughAnotherIsNotKnown) {
+TEST(Placard, IsUnsafeByOneStoryDespiteUnknownOthers) {
   const PlacardChoice c = placard_of({drifted(1, 0.05), drifted(2, kNaN, kNaN)});
   EXPECT_EQ(c.placard, Placard::unsafe);
   EXPECT_FALSE(c.judged);

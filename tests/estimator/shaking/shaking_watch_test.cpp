@@ -66,7 +66,7 @@ class ShakingTest : public testing::Test {
   std::vector<SensorAxis> axes_;
 };
 
-TEST_F(ShakingTest, IsToldOnceWithItsTimesAndPeaks) {
+TEST_F(ShakingTest, IsReportedOnceWithItsTimesAndPeaks) {
   ShakingWatch w = watch();
   int ended = 0;
   for (int i = 0; i < 6000; ++i)
@@ -87,7 +87,7 @@ TEST_F(ShakingTest, IsToldOnceWithItsTimesAndPeaks) {
   EXPECT_TRUE(std::isnan(s.gap_nrmse));
 }
 
-TEST_F(ShakingTest, AnInterruptionKeepsWhereASensorRests) {
+TEST_F(ShakingTest, AnInterruptionKeepsTheRestLevel) {
   ShakingWatch w = watch();
   for (int i = 0; i < 6000; ++i) {
     SampleSet set = at(i);
@@ -98,7 +98,7 @@ TEST_F(ShakingTest, AnInterruptionKeepsWhereASensorRests) {
   EXPECT_NEAR(w.ended().peak.accel_mps2[2] / (3 * accel), 1, 0.05);
 }
 
-TEST_F(ShakingTest, ATimeWithoutSamplesIsToldAndIsNoCalm) {
+TEST_F(ShakingTest, ATimeWithoutSamplesIsReportedAndIsNotCalm) {
   // Longer than quiet_s, in the middle of the motion. Instants without a value are missing, too.
   for (const bool empty : {false, true}) {
     ShakingWatch w = watch();
@@ -130,7 +130,7 @@ TEST_F(ShakingTest, ATimeWithoutSamplesIsToldAndIsNoCalm) {
   }
 }
 
-TEST_F(ShakingTest, ASilenceBeforeItIsToldWhenItMayHaveBegunInIt) {
+TEST_F(ShakingTest, ASilenceBeforeItIsReportedIfItMayHaveBegunThen) {
   for (const bool near : {false, true}) {
     ShakingWatch w = watch();
     for (int i = 0; i < 6000; ++i) {
@@ -142,7 +142,7 @@ TEST_F(ShakingTest, ASilenceBeforeItIsToldWhenItMayHaveBegunInIt) {
   }
 }
 
-TEST_F(ShakingTest, AProcessThatComesUpInItSaysSo) {
+TEST_F(ShakingTest, AStartDuringItIsReported) {
   ShakingWatch w = watch();
   w.came_up(from_microseconds(0), false);
   for (int i = 2500; i < 6000; ++i) (void)w.push(at(i), nullptr);
@@ -162,7 +162,7 @@ TEST_F(ShakingTest, ManySilencesAreBounded) {
   EXPECT_EQ(to_microseconds(all.back().to), 30'000'000);
 }
 
-TEST_F(ShakingTest, WhatFollowsAVeryLongSilenceIsAnotherMotion) {
+TEST_F(ShakingTest, AVeryLongSilenceSeparatesTwoMotions) {
   ShakingWatch w = watch();
   int ended = 0;
   for (int i = 0; i < 6000; ++i) {
@@ -190,7 +190,7 @@ TEST_F(ShakingTest, AFailedSensorHasNoPeakAndNoDrift) {
   EXPECT_GT(w.ended().peak.drift_m[0], 0);
 }
 
-TEST_F(ShakingTest, AKnockIsNone) {
+TEST_F(ShakingTest, AKnockIsNoShaking) {
   ShakingWatch w = watch();
   for (int i = 0; i < 6000; ++i) {
     SampleSet set = at(i, 0);
@@ -228,7 +228,7 @@ TEST_F(ShakingTest, ComparesStiffnessBeforeAndAfter) {
   EXPECT_NEAR(given.ratio(), 0.8 / 0.9 - 1, 1e-9);
 }
 
-TEST_F(ShakingTest, GoesOnFromItsState) {
+TEST_F(ShakingTest, ContinuesFromItsState) {
   for (const int cut : {1500, 2100, 2900, 3500}) {
     ShakingWatch whole = watch(), first = watch(), second = watch();
     for (int i = 0; i < 700; ++i)

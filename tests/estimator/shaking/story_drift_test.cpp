@@ -87,10 +87,10 @@ TEST(StoryDrift, SlowDriftIsRestoredFromTheStiffness) {
   EXPECT_TRUE(std::isfinite(known.slow_ratio));
   EXPECT_GT(std::abs(unknown.ratio - known.ratio) / known.ratio, kLost);
   EXPECT_TRUE(std::isnan(unknown.slow_ratio));
-  EXPECT_TRUE(std::isnan(unknown.std_error)) << "without a stiffness nobody knows what is missing";
+  EXPECT_TRUE(std::isnan(unknown.std_error)) << "the missing part is unknown without a stiffness";
 }
 
-TEST(StoryDrift, WhatWasNotRestoredCountsOnceTheStiffnessIsKnown) {
+TEST(StoryDrift, UnrestoredDriftCountsOnceTheStiffnessIsKnown) {
   Peak late = swing(0.01, false);
   late.known.theta = {stiffness(), kNaN};
   late.known.std_error = {0.01, kNaN};
@@ -99,7 +99,7 @@ TEST(StoryDrift, WhatWasNotRestoredCountsOnceTheStiffnessIsKnown) {
   EXPECT_NEAR(d.std_error, std::hypot(d.noise_error, d.slow_error), 1e-15);
 }
 
-TEST(StoryDrift, NoiseErrorIsThatOfNoiseAlone) {
+TEST(StoryDrift, NoiseErrorContainsOnlyNoise) {
   constexpr double kLimit = 0.15;  // of a standard deviation over 500 s
   StoryResponse response(one_story());
   Random random(5);
@@ -131,14 +131,14 @@ TEST(StoryDrift, AGapAtThePeakIsNoticed) {
   EXPECT_FALSE(story_drifts(one_story(), early.peak, early.known)[0].interrupted_at_peak());
 }
 
-TEST(StoryDrift, OfADeadSensorIsNotKnown) {
+TEST(StoryDrift, IsUnknownForADeadSensor) {
   const Peak dead = swing(0.01, true, 0, 4000);
   const StoryDrift d = story_drifts(one_story(), dead.peak, dead.known)[0];
   EXPECT_FALSE(d.known());
   EXPECT_TRUE(std::isnan(d.std_error));
 }
 
-TEST(StoryDrift, OfPeaksWithoutTheirSlowPartIsNotSilentAboutIt) {
+TEST(StoryDrift, HasNoErrorIfTheSlowPartIsMissing) {
   PeakResponse bare;
   bare.accel_mps2 = {1, 1};
   bare.drift_m = {0.03};

@@ -26,7 +26,7 @@ Eigen::VectorXd motion() {
   return Eigen::VectorXd::LinSpaced(10, 1, 10);
 }
 
-TEST(ChannelEffects, DoWhatTheirEquationsSay) {
+TEST(ChannelEffects, FollowTheirEquations) {
   const double angle = 10 * M_PI / 180;
   const struct {
     Effect effect;
@@ -53,12 +53,12 @@ TEST(ChannelEffects, DoWhatTheirEquationsSay) {
   }
 }
 
-TEST(ChannelEffects, ABiasWaitsForItsTime) {
+TEST(ChannelEffects, ABiasStartsAtItsTime) {
   ChannelEffects effects({channel_effect(EffectKind::bias_drift, 0, {0.5, 2})});
   EXPECT_EQ(effects.apply(1.0, motion())[0], 1.0);
 }
 
-TEST(ChannelEffects, DelayTheResponseAndLimitTheSensor) {
+TEST(ChannelEffects, DelayAndClipTheResponse) {
   const test::TableModel m = test::table_model();
   const ChannelEffects effects({channel_effect(EffectKind::time_shift, 3, {0.012}),
                                 channel_effect(EffectKind::clipping, 5, {1.5}),

@@ -60,7 +60,7 @@ Effect example(EffectKind kind) {
   return test::example_effect(kind, test::table_model());
 }
 
-TEST(ElementLaw, WithoutMemoryGivesBackItsEnergy) {
+TEST(ElementLaw, ConservesEnergyWithoutMemory) {
   using enum EffectKind;
   for (const EffectKind kind :
        {cubic_stiffness, quadratic_stiffness, one_sided_gap, two_sided_gap, p_delta}) {
@@ -141,7 +141,7 @@ TEST(ElementLaw, ASlipZoneMakesTheLoopThinner) {
   EXPECT_DOUBLE_EQ(same.energy_j(), thick.energy_j());
 }
 
-TEST(ElementLaw, StiffnessGoesInItsTime) {
+TEST(ElementLaw, StiffnessFallsAtItsTime) {
   Led drift(example(EffectKind::stiffness_drift));  // -5 kN/m from 1 s on, over 2 s
   drift.cycles(5);
   drift.to(1e-3);

@@ -187,7 +187,7 @@ TEST(LinearBuilding, AStiffBuildingFollowsTheGround) {
   for (int f = 0; f < 4; ++f) EXPECT_NEAR(b.accel_abs()[s.dof(5, f)], ground[f < 2 ? 0 : 1], 1e-5);
 }
 
-TEST(LinearBuilding, GoesOnFromItsStateWhenAStiffnessChanges) {
+TEST(LinearBuilding, ContinuesFromItsStateWhenAStiffnessChanges) {
   const Structure s = one_mass();
   LinearBuilding b(s, ParameterTable(s), vector({800, 0}), 0.01);
   b.set_state(vector({0.01}), vector({0.3}));

@@ -51,7 +51,7 @@ TEST(LinearResponse, DelaysAChannelByPartsOfAStep) {
   }
 }
 
-TEST(LinearResponse, StopsWhatWouldAlias) {
+TEST(LinearResponse, FiltersFrequenciesThatWouldAlias) {
   const Structure s = test::table1();
   const ParameterTable table(s);
   ResponseOptions without;
@@ -61,7 +61,7 @@ TEST(LinearResponse, StopsWhatWouldAlias) {
             0.5);
 }
 
-TEST(LinearResponse, FilteringChannelsIsFilteringTheGround) {
+TEST(LinearResponse, FilteringChannelsEqualsFilteringTheGround) {
   const Structure s = test::table2();
   const ParameterTable table(s);
   const Eigen::VectorXd theta = test::table2_theta('c');
@@ -108,7 +108,7 @@ TEST(LinearResponse, AChangeActsFromItsTimeOn) {
   EXPECT_DOUBLE_EQ(b.time_s(), 3.0);
 }
 
-TEST(LinearResponse, TheStepDoesNotMatterWhileTheGroundIsLinearWithin) {
+TEST(LinearResponse, TheStepDoesNotMatterForLinearGroundMotion) {
   const Structure s = test::table1();
   const ParameterTable table(s);
   const PlanMotion motion = directed(kanai_tajimi({.duration_s = 5, .step_s = 0.01}), 0.3);

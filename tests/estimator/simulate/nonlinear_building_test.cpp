@@ -80,7 +80,7 @@ test::TableModel model_for(EffectKind kind) {
 
 class EveryEffect : public testing::TestWithParam<EffectKind> {};
 
-TEST_P(EveryEffect, OfSizeZeroIsTheLinearBuilding) {
+TEST_P(EveryEffect, GivesTheLinearBuildingAtSizeZero) {
   const test::TableModel m = model_for(GetParam());
   const Effect none = test::example_effect(GetParam(), m, 0);
   EXPECT_LT(difference(shake_with(m, {none}), shake_linear(m)), kNoEffect);
@@ -221,7 +221,7 @@ TEST(NonlinearBuilding, TunedMassDamperIsASecondStory) {
   EXPECT_LT(difference(shake(damped), shake(both).topRows(1)), kExact);
 }
 
-TEST(NonlinearBuilding, RotationsSoftenAFrameAsSpringsInSeries) {
+TEST(NonlinearBuilding, RotationalSpringsActInSeries) {
   const Structure s = one_mass();
   const double k = 800, turning = 3000, h = 1.5;
   const double series = 1 / (1 / k + h * h / turning);
@@ -235,7 +235,7 @@ TEST(NonlinearBuilding, RotationsSoftenAFrameAsSpringsInSeries) {
   }
 }
 
-TEST(NonlinearBuilding, FlexibleFloorsOfARigidBuildingAreThoseOfAFlexibleOne) {
+TEST(NonlinearBuilding, FlexibleFloorsMatchAFlexibleBuilding) {
   const test::TableModel rigid = test::table_model(FloorModel::rigid);
   const test::TableModel flexible = test::table_model();
   const ParameterTable table = flexible.table();
@@ -252,7 +252,7 @@ TEST(NonlinearBuilding, FlexibleFloorsOfARigidBuildingAreThoseOfAFlexibleOne) {
   EXPECT_LT(difference(shake(b), shake_linear(flexible)), kExact);
 }
 
-TEST(NonlinearBuilding, ExtraMassIsThatOfTheNode) {
+TEST(NonlinearBuilding, ExtraMassAddsToTheNode) {
   test::TableModel m = test::table_model();
   const Eigen::MatrixXd with_effect =
       shake_with(m, {test::example_effect(EffectKind::extra_mass, m)});
@@ -277,7 +277,7 @@ TEST(NonlinearBuilding, StiffnessDropsAtItsTime) {
   }
 }
 
-TEST(NonlinearBuilding, RatiosThatFallWithFrequencyDampTheMasses) {
+TEST(NonlinearBuilding, MassDampingFallsWithFrequency) {
   constexpr double kAlpha_ps = 0.7;
   const test::TableModel m = test::table_model();
   const Structure& s = m.structure;
@@ -300,7 +300,7 @@ TEST(NonlinearBuilding, RatiosThatFallWithFrequencyDampTheMasses) {
   EXPECT_GT(difference(by_ratios, shake_with(m, {})), 0.05);
 }
 
-TEST(NonlinearBuilding, AHarmonicForceShakesAsItShould) {
+TEST(NonlinearBuilding, AHarmonicForceGivesTheClosedForm) {
   const Structure s = one_mass();
   const double k = 800, c = 8, hz = 2, force = 5, w = 2 * M_PI * hz;
   NonlinearBuilding b(
@@ -316,7 +316,7 @@ TEST(NonlinearBuilding, AHarmonicForceShakesAsItShould) {
   EXPECT_NEAR(peak, force / std::hypot(k - 2 * w * w, c * w), 1e-4 * peak);
 }
 
-TEST(BuildingModel, KnowsWhatCannotStand) {
+TEST(BuildingModel, DetectsAnUnstableBuilding) {
   const test::TableModel m = test::table_model();
   Effect heavy = test::example_effect(EffectKind::p_delta, m);
   EXPECT_TRUE(stands(m.structure, m.table(), m.theta, {heavy}));

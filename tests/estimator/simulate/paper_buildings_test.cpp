@@ -22,7 +22,7 @@ void expect_frequencies(const estimator::Structure& s, const Eigen::VectorXd& th
   EXPECT_NEAR(f.back(), highest_hz, kHighestLimit);
 }
 
-TEST(PaperBuildings, HaveTheFrequenciesTheMethodStates) {
+TEST(PaperBuildings, HaveThePublishedFrequencies) {
   expect_frequencies(table1(), table1_theta(), 0.37, 2.8);
   expect_frequencies(table2(), table2_theta('b'), 1.07, 3.8);
   expect_frequencies(table2(), table2_theta('c'), 1.08, 7.7);

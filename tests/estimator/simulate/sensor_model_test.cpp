@@ -29,7 +29,7 @@ struct Bench {
   }
 };
 
-TEST(SensorModel, AnIdealSensorGivesTheMotion) {
+TEST(SensorModel, AnIdealSensorMeasuresTheMotion) {
   Bench b;
   for (Eigen::Index i = 0; i < b.motion.size(); ++i) b.motion[i] = static_cast<double>(i) - 7.5;
   const auto samples = b.run(1);
@@ -74,7 +74,7 @@ TEST(SensorModel, NoiseHasItsDensityAndChannelsAreIndependent) {
   EXPECT_NEAR(noise_density_of(0.01, 100 * sd, kRate_hz), 2e-3, 1e-15);
 }
 
-TEST(SensorModel, SameSeedSameSamplesOtherSeedOthers) {
+TEST(SensorModel, SamplesDependOnlyOnTheSeed) {
   Bench b;
   for (SensorModel& m : b.models) m.noise_density = 1e-3;
   EXPECT_EQ(b.run(50), b.run(50));
@@ -109,7 +109,7 @@ TEST(SensorModel, QuantisesAndSaturates) {
   EXPECT_DOUBLE_EQ(b.run(1)[0][0], -20);
 }
 
-TEST(SensorModel, LosesItsShareAndIsDeadBetweenItsTimes) {
+TEST(SensorModel, LosesItsShareAndIsDeadInItsTime) {
   Bench b;
   b.models[0].loss_ratio = 0.02;
   b.models[1].dead_from_s = 1;
@@ -137,7 +137,7 @@ TEST(SensorModel, CalibrationGivesTheMotionBack) {
   EXPECT_NEAR(b.axes[0].polarity * (b.axes[0].scale * raw - b.axes[0].offset), 1.25, 1e-14);
 }
 
-TEST(SensorModel, ImpossibleModelsAreToldApart) {
+TEST(SensorModel, RefusesImpossibleModels) {
   EXPECT_TRUE(problems(SensorModel{}).empty());
   EXPECT_EQ(problems({.bits = 16}).size(), 1u);
   EXPECT_EQ(problems({.noise_density = -1, .loss_ratio = 1}).size(), 2u);

@@ -14,7 +14,7 @@ namespace effect_test {
 
 using enum EffectKind;
 
-TEST(EffectCatalogue, IsInTheOrderOfItsKindsAndNamesEachOnce) {
+TEST(EffectCatalogue, ListsEachKindOnceInOrder) {
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < effect_catalogue().size(); ++i) {
     const EffectDescription& d = effect_catalogue()[i];
@@ -38,7 +38,7 @@ TEST(EffectCatalogue, AKeyHasOneUnit) {
           }
 }
 
-TEST(EffectPlaces, AreAllThereAre) {
+TEST(EffectPlaces, CoverEveryPlace) {
   const test::TableModel m = test::table_model();
   const auto count = [&](EffectKind kind) {
     return effect_places(kind, m.structure, m.axes).size();

@@ -79,7 +79,7 @@ TEST(Elements, FloorOfFourByFourFramesHasRankFive) {
   EXPECT_EQ(k.topRightCorner(8, 8).norm(), 0);
 }
 
-TEST(Elements, BuildingIsTheSumOfItsRankOneParts) {
+TEST(Elements, BuildingIsTheSumOfItsElements) {
   const Structure s = test::table1();
   const ParameterTable table(s);
   const Eigen::VectorXd theta = test::table1_theta();

@@ -93,7 +93,7 @@ TEST(Matrices, VeryStiffPanelsHaveTheFrequenciesOfRigidFloors) {
   for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(stiff[i], exact[i], 1e-5 * exact[i]);
 }
 
-TEST(Matrices, LowestFrequencyOfALargeBuildingIsThatOfAll) {
+TEST(Matrices, LowestFrequencyOfALargeBuildingIsRight) {
   for (const FloorModel floor : {FloorModel::flexible, FloorModel::rigid}) {
     Structure s = test::table2();
     s.floor = floor;

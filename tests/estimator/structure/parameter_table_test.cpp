@@ -74,7 +74,7 @@ TEST(ParameterTable, IndicesNamesAndPartnersAgree) {
           index = table.panel_damping(p.story, p.panel);
           break;
         case ParameterKind::bending_stiffness:
-          FAIL() << "of groups alone";
+          FAIL() << "belongs only to groups";
       }
       EXPECT_EQ(index, i) << p.name;
     }

@@ -43,14 +43,14 @@ TEST(SensorProblems, EveryMalformedAxisIsNamed) {
   expect_one([](Axes& a) { a[7].polarity = 0.5; }, "polarity", 7, "polarity");
 }
 
-TEST(SensorProblems, NumbersThatAreNoneAreNamed) {
+TEST(SensorProblems, InvalidNumbersAreNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_one([&](Axes& a) { a[2].offset = nan; }, "offset", 2, "offset");
   expect_one([&](Axes& a) { a[2].delay = nan; }, "delay_s", 2, "delay");
   expect_one([&](Axes& a) { a[2].noise_density = -1e-4; }, "noise_mps2_per_rthz", 2, "noise");
 }
 
-TEST(SensorProblems, PlacesThatDoNotExistAreNamed) {
+TEST(SensorProblems, MissingPlacesAreNamed) {
   for (const int story : {-1, 6})
     expect_one([&](Axes& a) { a[0].story = story; }, "story", 0, "does not exist");
   for (const int frame : {-1, 4})
@@ -68,7 +68,7 @@ TEST(SensorProblems, TwoAxesClaimingOnePlaceAreNamed) {
   EXPECT_NE(found[0].message.find("'F1-x1'"), std::string::npos);
 }
 
-TEST(SensorProblems, WhatTheBaseLacksIsNamedAndPlacesAboveAreNot) {
+TEST(SensorProblems, MissingBaseChannelsAreNamed) {
   expect_one([](Axes& a) { a.erase(a.begin() + kBaseX); }, "", -1, "direction x");
   expect_one([](Axes& a) { a.erase(a.begin() + kBaseY); }, "", -1, "direction y");
   expect_one([](Axes& a) { a.clear(); }, "", -1, "above the base");

@@ -48,7 +48,7 @@ std::vector<std::string> names(const Structure& s, const std::vector<SensorAxis>
 
 using Names = std::vector<std::string>;
 
-TEST(StoryGroups, EverywhereMeasuredMeansEveryStory) {
+TEST(StoryGroups, AreSingleStoriesIfEveryFloorIsMeasured) {
   const Structure s = building(FloorModel::flexible, 2);
   std::vector<SensorAxis> axes;
   for (int story = 1; story <= 2; ++story)
@@ -58,7 +58,7 @@ TEST(StoryGroups, EverywhereMeasuredMeansEveryStory) {
   EXPECT_FALSE(story_groups(s, axes).every_story);
 }
 
-TEST(StoryGroups, ThreeAxesOnRigidFloorsTellTwoFramesApart) {
+TEST(StoryGroups, ThreeAxesOnRigidFloorsDistinguishTwoFrames) {
   const Structure s = building(FloorModel::rigid);
   std::vector<SensorAxis> axes;
   for (const int story : {3, 6})
@@ -67,7 +67,7 @@ TEST(StoryGroups, ThreeAxesOnRigidFloorsTellTwoFramesApart) {
                                    "ky_1to3_x1", "ky_4to6_x1", "ky_1to3_x2", "ky_4to6_x2"}));
 }
 
-TEST(StoryGroups, TwoAxesOnRigidFloorsShowDirections) {
+TEST(StoryGroups, TwoAxesOnRigidFloorsShowOnlyDirections) {
   const Structure s = building(FloorModel::rigid);
   std::vector<SensorAxis> axes;
   for (const int story : {1, 5})
@@ -81,14 +81,14 @@ TEST(StoryGroups, DirectionsMayBeMeasuredOnOtherFloors) {
   EXPECT_EQ(names(s, axes), (Names{"kx_1to3", "kx_4to6", "ky_1to6"}));
 }
 
-TEST(StoryGroups, OnFlexibleFloorsEveryFrameHasItsOwn) {
+TEST(StoryGroups, EveryFrameOfFlexibleFloorsHasItsOwn) {
   const Structure s = building(FloorModel::flexible);
   std::vector<SensorAxis> axes{on(2, 0, s), on(6, 0, s), on(6, 1, s), on(3, 2, s)};
   EXPECT_EQ(names(s, axes),
             (Names{"kx_1to2_y1", "kx_3to6_y1", "kx_1to6_y2", "ky_1to3", "ky_4to6"}));
 }
 
-TEST(StoryGroups, OfOneFrameHaveItsName) {
+TEST(StoryGroups, HaveTheNameOfASingleFrame) {
   Structure s = building(FloorModel::flexible);
   s.frames_x = {"y1"};
   s.frames_y = {};
@@ -106,7 +106,7 @@ TEST(StoryGroups, FindTheGroupOfAStory) {
   EXPECT_EQ(table[table.frame_damping(4, 0)].name, "cx_4to6");
 }
 
-TEST(FrameWeights, AreThoseOfTheRigidMotion) {
+TEST(FrameWeights, FollowTheRigidMotion) {
   const Structure s = building(FloorModel::rigid);
   const double theta = 0.01;  // about the first corner
   const std::vector<double> turned{0, -8 * theta, 0, 12 * theta};

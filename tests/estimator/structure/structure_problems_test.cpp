@@ -57,7 +57,7 @@ TEST(StructureProblems, AreReportedAllAtOnce) {
             (Fields{"span_x_m", "node_mass_kg", "frames_y"}));
 }
 
-TEST(StructureProblems, NothingAtAllIsNoBuilding) {
+TEST(StructureProblems, RefuseAnEmptyBuilding) {
   const std::vector<Problem> found = find_problems(Structure{});
   bool stories = false, frames = false;
   for (const Problem& p : found) {
@@ -74,7 +74,7 @@ TEST(StructureProblems, NegativeStoriesAreNamedAndHarmless) {
   EXPECT_EQ(fields.front(), "stories");
 }
 
-TEST(StructureProblems, MessagesSayFieldAndRule) {
+TEST(StructureProblems, NameFieldAndRule) {
   Structure s = test::table1();
   s.span_x = {1, 2, 3};
   ASSERT_EQ(problems(s).size(), 1u);

@@ -30,7 +30,7 @@ AmplitudeBins learned(std::uint64_t seed, int windows, double error) {
   return bins;
 }
 
-TEST(AmplitudeCurve, FollowsALawWithinItsErrors) {
+TEST(AmplitudeCurve, FitsALawWithinItsErrors) {
   constexpr int kDraws = 20, kPlaces = 10;
   constexpr double kMaxMissed = 0.02;  // of 3 errors
   int missed = 0, places = 0;
@@ -47,7 +47,7 @@ TEST(AmplitudeCurve, FollowsALawWithinItsErrors) {
   EXPECT_LE(missed, kMaxMissed * places);
 }
 
-TEST(AmplitudeCurve, BeyondWhatWasLearnedTheErrorGrowsTowardSoftening) {
+TEST(AmplitudeCurve, ErrorGrowsTowardSofteningBeyondTheLearnedRange) {
   const AmplitudeCurve curve(1, kError / std::sqrt(100), learned(1, 100, kError).points(1));
   const double top = kStrongest_m, beyond = 10 * top, below = kWeakest_m / 10;
   EXPECT_GT(curve.expected(beyond).std_error, 10 * curve.expected(top).std_error);
@@ -57,7 +57,7 @@ TEST(AmplitudeCurve, BeyondWhatWasLearnedTheErrorGrowsTowardSoftening) {
   EXPECT_GT(curve.least(below, 3), curve.least(kWeakest_m, 3) - 0.01);
 }
 
-TEST(AmplitudeCurve, OfOneAmplitudeIsThatValueThere) {
+TEST(AmplitudeCurve, EqualsTheValueAtASingleAmplitude) {
   const AmplitudeCurve curve(2, 0.001, {{1e-4, 2, 0.002}});
   ASSERT_TRUE(curve.known());
   EXPECT_NEAR(curve.expected(1e-4).ratio, 1, 1e-5);
@@ -66,12 +66,12 @@ TEST(AmplitudeCurve, OfOneAmplitudeIsThatValueThere) {
   EXPECT_FALSE(AmplitudeCurve(2, 0.001, {}).known());
 }
 
-TEST(AmplitudeBins, ScatterIsAboutWhatAmplitudeExplains) {
+TEST(AmplitudeBins, ScatterExcludesTheEffectOfAmplitude) {
   EXPECT_LT(learned(3, 300, kError).excess(), 1.3);
   EXPECT_GT(learned(3, 300, 3 * kError).excess(), 6);
 }
 
-TEST(AmplitudeBins, AmplitudesBeyondTheBinsCountWithTheOutermost) {
+TEST(AmplitudeBins, OutermostBinsIncludeLargerAndSmallerAmplitudes) {
   AmplitudeBins bins;
   for (const double a : {1e-4, 1e-30, 1e30, 1e-300, 1e300}) bins.push(a, 0, 1);
   EXPECT_EQ(bins.points(1).size(), 3u);
@@ -88,7 +88,7 @@ TEST(RecentAmplitude, ForgetsInInverseProportionToTime) {
   EXPECT_NEAR(recent.at(1e9), 0, 1e-6);
 }
 
-TEST(RecentAmplitude, IsBoundedAndKeepsWhatCountsMost) {
+TEST(RecentAmplitude, IsBoundedAndKeepsTheLargestContributions) {
   RecentAmplitude recent;
   for (int i = 0; i < 100; ++i) recent.push(i, std::pow(0.9, i));
   recent.push(100, 0.5);  // stronger than most of what came before

@@ -99,7 +99,7 @@ Stiffness loses(std::map<int, std::pair<double, double>> losses) {
   };
 }
 
-TEST(ChangeBook, IsChangingBeforeItHasANumberAndThenSharpens) {
+TEST(ChangeBook, SaysChangingBeforeItHasANumber) {
   Building building(loses({{3, {kChange_s, 0.15}}}));
   Watch watch = building.watch();
   std::vector<Alarm> news;
@@ -136,7 +136,7 @@ TEST(ChangeBook, IsChangingBeforeItHasANumberAndThenSharpens) {
   EXPECT_GE(record->change.latest, record->change.since);
 }
 
-TEST(ChangeBook, EverythingAlikeIsOneFinding) {
+TEST(ChangeBook, ReportsACommonChangeAsOneFinding) {
   for (const double shift : {-0.05, 0.05}) {
     Building building([shift](int, double time_s) { return time_s < kChange_s ? 1 : 1 + shift; });
     Watch watch = building.watch();
@@ -154,7 +154,7 @@ TEST(ChangeBook, EverythingAlikeIsOneFinding) {
 }
 
 /// A baseline of another season, and then a frame that loses stiffness.
-TEST(ChangeBook, ALossBesideWhatEverythingHasInCommonIsFound) {
+TEST(ChangeBook, FindsALossBesideACommonChange) {
   Building building([](int element, double time_s) {
     return 0.95 * (element == 5 && time_s >= kChange_s ? 0.85 : 1);
   });
@@ -168,7 +168,7 @@ TEST(ChangeBook, ALossBesideWhatEverythingHasInCommonIsFound) {
   EXPECT_NEAR(watch.record(5)->change.ratio, -0.15, 4 * watch.record(5)->change.std_error);
 }
 
-TEST(ChangeBook, TwoLossesTwoSecondsApartAreTwo) {
+TEST(ChangeBook, SeparatesTwoLossesTwoSecondsApart) {
   Building building(loses({{3, {kChange_s, 0.2}}, {8, {kChange_s + 2, 0.1}}}));
   Watch watch = building.watch();
   std::set<int> named;
@@ -181,7 +181,7 @@ TEST(ChangeBook, TwoLossesTwoSecondsApartAreTwo) {
   }
 }
 
-TEST(ChangeBook, AGainIsNotSaidBesideAnOpenLoss) {
+TEST(ChangeBook, ReportsNoGainBesideAnOpenLoss) {
   Building building([](int element, double time_s) {
     return time_s < kChange_s ? 1 : element == 3 ? 0.8 : element == 4 ? 1.06 : 1;
   });
@@ -192,7 +192,7 @@ TEST(ChangeBook, AGainIsNotSaidBesideAnOpenLoss) {
 }
 
 /// A deviation of a few seconds that the windows behind it do not confirm.
-TEST(ChangeBook, WhatComesAndGoesIsWithdrawn) {
+TEST(ChangeBook, WithdrawsAChangeThatDisappears) {
   Building building([](int element, double time_s) {
     return element == 3 && time_s >= kChange_s && time_s < kChange_s + 8 ? 0.8 : 1;
   });
@@ -202,7 +202,7 @@ TEST(ChangeBook, WhatComesAndGoesIsWithdrawn) {
 }
 
 /// Delayed windows arrive after newer ones.
-TEST(ChangeBook, LateWindowsCount) {
+TEST(ChangeBook, CountsLateWindows) {
   constexpr double kLate_s = 20;
   Building building(loses({{3, {kChange_s, 0.15}}}));
   Watch watch = building.watch();
@@ -214,7 +214,7 @@ TEST(ChangeBook, LateWindowsCount) {
   EXPECT_EQ(named, std::set<int>{3});
 }
 
-TEST(ChangeBook, GoesOnFromAStateToTheBit) {
+TEST(ChangeBook, ContinuesFromAStateBitByBit) {
   for (const double cut_s : {30.0, kChange_s + 3, kChange_s + 7, kChange_s + 50}) {
     Building one(loses({{3, {kChange_s, 0.15}}})), other(loses({{3, {kChange_s, 0.15}}}));
     Watch whole = one.watch(), first = other.watch(), second = other.watch();
@@ -233,7 +233,7 @@ TEST(ChangeBook, GoesOnFromAStateToTheBit) {
   }
 }
 
-TEST(ChangeTime, IsBetweenTheWindowsThatShowIt) {
+TEST(ChangeTime, LiesBetweenTheWindowsThatShowIt) {
   constexpr double kError = 0.01, kStep_s = 0.2, kAt_s = 10;
   WindowHistory history(1);
   Random random(3);

@@ -35,14 +35,14 @@ TEST(ChangePoint, IsFoundWithItsSizeErrorAndPlace) {
   EXPECT_GT(found->std_error(), 0.004);
 }
 
-TEST(ChangePoint, IsFoundWithTwoWindowsBehindIt) {
+TEST(ChangePoint, IsFoundTwoWindowsLater) {
   const auto values = series(
       6, [](int i) { return i < 4 ? 1.0 : 0.9; }, 2);
   EXPECT_TRUE(find_change(values, 0.05));
   EXPECT_FALSE(find_change({values.begin(), values.end() - 1}, 0.05));
 }
 
-TEST(ChangePoint, IsNoneOfNoiseInAThousandSeries) {
+TEST(ChangePoint, IsNotFoundInAThousandSeriesOfNoise) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed)
     found += find_change(series(
@@ -52,7 +52,7 @@ TEST(ChangePoint, IsNoneOfNoiseInAThousandSeries) {
   EXPECT_EQ(found, 0);
 }
 
-TEST(ChangePoint, IsNoneOfValuesThatScatterMoreThanTheirErrorsSay) {
+TEST(ChangePoint, IsNotFoundInScatterBeyondTheStatedErrors) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed)
     found += find_change(series(
@@ -62,7 +62,7 @@ TEST(ChangePoint, IsNoneOfValuesThatScatterMoreThanTheirErrorsSay) {
   EXPECT_EQ(found, 0);
 }
 
-TEST(ChangePoint, IsNoneOfASlowDrift) {
+TEST(ChangePoint, IsNotFoundInASlowDrift) {
   EXPECT_FALSE(find_change(series(40, [](int i) { return 1 - 0.005 * i; }), 0.05));
 }
 

@@ -324,14 +324,14 @@ void partial(std::uint64_t seed, double softening, Tally& tally) {
   shake_until(kEnd_s, 1);
 }
 
-TEST(ChangeRecord, HoldsWhereEveryFrameHasASensor) {
+TEST(ChangeRecord, KeepsItsPromisesWithASensorOnEveryFrame) {
   Tally tally;
   for (int run = 0; run < wanted_runs(); ++run) full(static_cast<std::uint64_t>(100 + run), tally);
   tally.print("full layout");
   tally.expect();
 }
 
-TEST(ChangeRecord, HoldsOfGroupsOfStories) {
+TEST(ChangeRecord, KeepsItsPromisesForGroupsOfStories) {
   Tally tally;
   for (int run = 0; run < wanted_runs(); ++run)
     partial(static_cast<std::uint64_t>(200 + run), 0, tally);
@@ -339,7 +339,7 @@ TEST(ChangeRecord, HoldsOfGroupsOfStories) {
   tally.expect();
 }
 
-TEST(ChangeRecord, HoldsOfGroupsThatSoftenWithAmplitude) {
+TEST(ChangeRecord, KeepsItsPromisesForGroupsThatSoftenWithAmplitude) {
   Tally tally;
   for (int run = 0; run < wanted_runs(); ++run)
     partial(static_cast<std::uint64_t>(300 + run), 0.15, tally);

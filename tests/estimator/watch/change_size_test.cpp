@@ -16,7 +16,7 @@ namespace change_size_test {
 
 constexpr double kError = 0.01;
 
-TEST(ChangeSize, IsTheWeightedMeanAndSharpens) {
+TEST(ChangeSize, IsTheWeightedMeanAndGetsMoreExact) {
   ChangeSize size;
   EXPECT_FALSE(size.known());
   size.push(-0.10, 0.01);
@@ -27,7 +27,7 @@ TEST(ChangeSize, IsTheWeightedMeanAndSharpens) {
   EXPECT_NEAR(size.std_error(), 0.01 * std::sqrt(excess / 1.25), 1e-12);
 }
 
-TEST(ChangeSize, WhatWindowsHaveInCommonStays) {
+TEST(ChangeSize, CommonErrorsOfWindowsRemain) {
   ChangeSize size;
   for (int i = 0; i < 100; ++i) size.push(-0.1, kError, 0.05);
   EXPECT_NEAR(size.ratio(), -0.1, 1e-9);

@@ -51,7 +51,7 @@ WindowEstimate window(int parameters, double end_hours) {
   return e;
 }
 
-TEST(DependenceLearner, FindsWhatValuesFollow) {
+TEST(DependenceLearner, FindsTheDependenceOfValues) {
   DependenceLearner learner(1, {240 * kHour_s, true, true});
   Random random(1);
   for (int h = 1; !learner.complete(); ++h) {
@@ -76,7 +76,7 @@ TEST(DependenceLearner, FindsWhatValuesFollow) {
   }
 }
 
-TEST(DependenceLearner, WhatTheConditionsDidNotShowHasAnError) {
+TEST(DependenceLearner, GivesAnErrorForUnseenConditions) {
   DependenceLearner learner(1, {24 * kHour_s, true, false});
   for (int h = 1; !learner.complete(); ++h) (void)learner.push(window(1, h), 10);
   const Dependence dependence = learner.dependence();
@@ -100,7 +100,7 @@ TEST(DependenceLearner, LeavesOutWindowsThatOverlapOrHaveNoTemperature) {
   EXPECT_NEAR(learner.baseline().value[0], 1, 1e-12);
 }
 
-TEST(MeanTemperature, IsOfTheStretchesAsked) {
+TEST(MeanTemperature, AveragesTheRequestedStretches) {
   MeanTemperature mean(180);
   for (int s = 0; s < 40'000; s += 60) mean.push(from_microseconds(1'000'000LL * s), s / 3600.0);
   mean.push(from_microseconds(1'000'000LL * 39'960), 1e9);  // broken
@@ -145,7 +145,7 @@ Months watch(bool follows_temperature) {
   return out;
 }
 
-TEST(Watch, ADailySwingOfStiffnessIsNoChangeWhenItFollowsTheTemperature) {
+TEST(Watch, ADailySwingThatFollowsTemperatureIsNoChange) {
   constexpr double kSoon_hours = 6;
   const Months follows = watch(true), blind = watch(false);
   EXPECT_EQ(follows.false_alarms, 0);
@@ -182,7 +182,7 @@ TEST(Watch, ADailySwingRaisesNothingInOrdinaryWindows) {
   EXPECT_NE(watch.quiet_baseline(), nullptr);
 }
 
-TEST(Watch, OtherConditionsThanWereLearnedAreLearnedAnew) {
+TEST(Watch, NewConditionsAreLearned) {
   constexpr int kLearn_hours = 10;
   const ParameterTable table(daemon::table1());
   WatchOptions options;

@@ -143,7 +143,7 @@ TEST(GroupWatch, FindsAFifthLostByOneStoryOfFive) {
 }
 
 /// Issue 21 asks for 17 of 20.
-TEST(GroupWatch, FindsATenthLostByOneStoryOfFiveMostly) {
+TEST(GroupWatch, MostlyFindsATenthLostByOneStoryOfFive) {
   constexpr double kFound = 0.85;
   const Tally tally = lose_each(0.1, wanted_runs());
   EXPECT_GE(tally.found, kFound * tally.cases);
@@ -151,7 +151,7 @@ TEST(GroupWatch, FindsATenthLostByOneStoryOfFiveMostly) {
 }
 
 /// Issue 21: no alarm in ten hours.
-TEST(GroupWatch, SofteningWhileItMovesIsNoChange) {
+TEST(GroupWatch, SofteningDuringMotionIsNoChange) {
   constexpr double kEvent_s = 40, kWeakest = 0.1;
   const double hours = wanted_runs() > 0 ? 2.5 * wanted_runs() : 0.25;
   test::SofteningTower tower(7, kSoftening, kNoise * kWeakest);
@@ -229,7 +229,7 @@ TEST(GroupWatch, RecoveryAfterStrongMotionIsNoChange) {
   EXPECT_EQ(shaken(0).alarms, 0);
 }
 
-TEST(GroupWatch, ALastingLossIsFoundWhenTheMotionIsAsWeakAsBefore) {
+TEST(GroupWatch, FindsALastingLossWhenTheMotionIsWeakAgain) {
   constexpr double kLost = 0.35, kLatest_s = 210, kErrors = 2, kMaxError = 0.3;
   const double of_group = 1 / (1 + 0.2 * (1 / (1 - kLost) - 1)) - 1;
   const Aftermath after = shaken(kLost);

@@ -27,7 +27,7 @@ constexpr double kBaseline = 5e9;  // N/m
 constexpr double kWindow_s = 5, kLong_s = 3600, kDay_s = 86400;
 constexpr double kNoise = 0.01, kLongNoise = 0.004;  // relative, of a window
 constexpr double kStrong_m = 1e-2, kWeak_m = 2e-4;   // rms deformation
-/// As in the six-story building of San Bernardino: 13 % over a factor 23.
+/// Like the six-story building of San Bernardino: 13 % over a factor of 23.
 constexpr double kPerLog = 0.13 / 3.14;
 
 Time at(double s) {
@@ -128,7 +128,7 @@ Count count(Series s, double until_s) {
   return out;
 }
 
-TEST(Recovery, AFrameThatRecoversIsSaidToRecoverAndIsExpectedWhereItWillBe) {
+TEST(Recovery, PredictsWhereARecoveringFrameEnds) {
   Series s;
   s.loss = recovers;
   for (const double until_s : {600.0, 3600.0, kDay_s}) {
@@ -140,7 +140,7 @@ TEST(Recovery, AFrameThatRecoversIsSaidToRecoverAndIsExpectedWhereItWillBe) {
   EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::recovering), kMinRecoveringDay);
 }
 
-TEST(Recovery, ALastingLossIsSaidToLastOnceRecoveryIsExcluded) {
+TEST(Recovery, CallsALossLastingOnceRecoveryIsExcluded) {
   Series s;
   s.loss = stays;
   for (const double until_s : {60.0, 600.0, 3600.0, kDay_s}) {
@@ -153,7 +153,7 @@ TEST(Recovery, ALastingLossIsSaidToLastOnceRecoveryIsExcluded) {
   EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::lasting), kMinLastingDay);
 }
 
-TEST(Recovery, WhatStopsRecoveringIsLasting) {
+TEST(Recovery, CallsALossLastingWhenRecoveryStops) {
   Series s;
   s.loss = both;
   const RecoveryLaw hour = [&] {
@@ -167,7 +167,7 @@ TEST(Recovery, WhatStopsRecoveringIsLasting) {
   EXPECT_LE(week.loss_outside, kMaxOutside);
 }
 
-TEST(Recovery, AnIntactFrameThatIsSofterInStrongMotionHasNotRecoveredAndLostNothing) {
+TEST(Recovery, ReportsNoLossForSofteningInStrongMotion) {
   Series s;
   for (const double until_s : {60.0, 600.0, kDay_s}) {
     const Count c = count(s, until_s);
@@ -177,7 +177,7 @@ TEST(Recovery, AnIntactFrameThatIsSofterInStrongMotionHasNotRecoveredAndLostNoth
   EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::recovered), 190);
 }
 
-TEST(Recovery, WithoutAnAmplitudeCurveTheSofteningIsNoLoss) {
+TEST(Recovery, ReportsNoLossForSofteningWithoutAnAmplitudeCurve) {
   // 4 % per unit of the logarithm, where nothing was learned and 3.5 % +- is assumed.
   Series s;
   s.curve = false;
@@ -188,7 +188,7 @@ TEST(Recovery, WithoutAnAmplitudeCurveTheSofteningIsNoLoss) {
 }
 
 /// The table of docs/equations.md, recovery.
-TEST(Recovery, IntervalsHoldAndNoVerdictIsWrong) {
+TEST(Recovery, IntervalsHoldAndVerdictsAreRight) {
   struct Case {
     const char* name;
     double (*loss)(double);
@@ -215,7 +215,7 @@ TEST(Recovery, IntervalsHoldAndNoVerdictIsWrong) {
     }
 }
 
-TEST(Recovery, ALossIsFoundBesideTheSoftening) {
+TEST(Recovery, FindsALossBesideSoftening) {
   Series s;
   s.loss = stays;
   const RecoveryLaw law = after(s, 3).law();
@@ -225,7 +225,7 @@ TEST(Recovery, ALossIsFoundBesideTheSoftening) {
   EXPECT_LT(law.stays, 0.09);
 }
 
-TEST(Recovery, FewWindowsSayWhyNothingIsKnown) {
+TEST(Recovery, GivesTheReasonIfWindowsAreFew) {
   Recovery r;
   EXPECT_FALSE(r.active());
   r.begin(at(100));
@@ -247,7 +247,7 @@ TEST(Recovery, FewWindowsSayWhyNothingIsKnown) {
   EXPECT_EQ(r.law().reason, RecoveryReason::amplitude);
 }
 
-TEST(Recovery, LeavesOutWindowsThatOverlapOrBeganInTheMotion) {
+TEST(Recovery, LeavesOutOverlappingWindowsAndThoseOfTheMotion) {
   Recovery one, both;
   for (Recovery* r : {&one, &both}) r->begin(at(100));
   both.push({at(98), at(103), 7, 0.001, 0, 0, 0});  // began during the motion
@@ -272,7 +272,7 @@ TEST(Recovery, BadWindowsChangeNothing) {
   EXPECT_EQ(r.loss_at(10).count, 0);
 }
 
-TEST(Recovery, IsRenewedAtTenMinutesAnHourAndADayOnce) {
+TEST(Recovery, IsRenewedOnceAtTenMinutesAnHourAndADay) {
   Recovery r;
   EXPECT_FALSE(r.renewal_due(at(1e9)));
   r.begin(at(0));
@@ -293,7 +293,7 @@ TEST(Recovery, IsRenewedAtTenMinutesAnHourAndADayOnce) {
   EXPECT_FALSE(r.is_of(at(700)));  // another cause
 }
 
-TEST(Recovery, GoesOnFromItsState) {
+TEST(Recovery, ContinuesFromItsState) {
   Series s;
   s.loss = recovers;
   s.until_s = 3600;

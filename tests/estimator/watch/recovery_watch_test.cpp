@@ -94,7 +94,7 @@ double lasting(double) {
   return 0.08;
 }
 
-TEST_F(RecoveryWatchTest, NothingIsSaidWithoutStrongMotion) {
+TEST_F(RecoveryWatchTest, ReportsNothingWithoutStrongMotion) {
   EXPECT_TRUE(watch(0, 5000, none).empty());
   EXPECT_EQ(recovery_->of(0), nullptr);
 }
@@ -120,7 +120,7 @@ TEST_F(RecoveryWatchTest, AnIntactFrameHasLostNothing) {
   EXPECT_EQ(recovery_->of(0)->law().verdict, RecoveryVerdict::recovered);
 }
 
-TEST_F(RecoveryWatchTest, OnlyAnAftershockAsStrongBeginsAnew) {
+TEST_F(RecoveryWatchTest, RestartsOnlyAfterAnEquallyStrongAftershock) {
   shake(100, 1);
   (void)watch(110, 1000, lasting);
   const Time first = recovery_->of(0)->began();
@@ -133,7 +133,7 @@ TEST_F(RecoveryWatchTest, OnlyAnAftershockAsStrongBeginsAnew) {
   EXPECT_NEAR(1e-6 * static_cast<double>(to_microseconds(recovery_->of(0)->began())), 2010, 0.5);
 }
 
-TEST_F(RecoveryWatchTest, GoesOnFromItsState) {
+TEST_F(RecoveryWatchTest, ContinuesFromItsState) {
   shake(100, 1);
   (void)watch(110, 500, lasting);
   StateWriter writer;

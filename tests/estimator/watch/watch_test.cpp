@@ -55,7 +55,7 @@ TEST(BaselineLearner, WeighsWindowsThatDoNotOverlap) {
   EXPECT_NEAR(b.degc[0], 5, 1e-12);
 }
 
-TEST(BaselineLearner, HasNoneOfWhatMostWindowsDoNotShow) {
+TEST(BaselineLearner, LeavesOutParametersThatMostWindowsDoNotShow) {
   BaselineLearner learner({Watched{}}, kInfinity);
   for (const double end_s : {3.0, 6.0}) EXPECT_FALSE(learner.push(window(end_s, kNaN)));
   EXPECT_FALSE(learner.push(window(9, 1)));
@@ -76,7 +76,7 @@ TEST(BaselineLearner, LearnsUntilItIsExact) {
 }
 
 /// In weak motion every window has the same pull of the prior, which no mean reveals.
-TEST(BaselineLearner, LeavesOutWhatIsPulledTowardTheDesign) {
+TEST(BaselineLearner, LeavesOutValuesPulledTowardTheDesign) {
   BaselineLearner learner({Watched{0.03, 0.1}}, kWindow_s);
   double t = 3;
   for (; t < 300; t += 3) {
@@ -88,7 +88,7 @@ TEST(BaselineLearner, LeavesOutWhatIsPulledTowardTheDesign) {
   EXPECT_EQ(learner.baseline().value[0], 1);
 }
 
-TEST(ChangeDetector, FindsAChangeSaysHowMuchAndSeesItGo) {
+TEST(ChangeDetector, FindsAChangeItsSizeAndItsEnd) {
   constexpr double kChange = -0.05, kFrom_s = 500, kTo_s = 1000;
   constexpr double kDelay_s = 3 * kWindow_s;
   ChangeDetector detector(known_baseline(), {{0.03}}, 16);
@@ -112,7 +112,7 @@ TEST(ChangeDetector, FindsAChangeSaysHowMuchAndSeesItGo) {
 }
 
 /// The watch stays silent however small the error of a window is compared with the least change.
-TEST(ChangeDetector, IsWrongAsRarelyAsItsThresholdSays) {
+TEST(ChangeDetector, RaisesFalseAlarmsAsRarelyAsItsThresholdPromises) {
   constexpr double kThreshold = 5;
   constexpr int kWindows = 100'000, kTests = 2 * ChangeDetector::kSizes;
   const double most = kTests * kWindows * std::exp(-kThreshold - ChangeDetector::kOvershoot);
@@ -131,7 +131,7 @@ TEST(ChangeDetector, IsWrongAsRarelyAsItsThresholdSays) {
   }
 }
 
-TEST(ChangeDetector, AShortWindowAloneConvincesNobody) {
+TEST(ChangeDetector, OneShortWindowDoesNotSuffice) {
   ChangeDetector detector(known_baseline(), {{0.03}}, 16);
   detector.push(window(3, 0.6));
   EXPECT_FALSE(detector.changed(0));
@@ -139,7 +139,7 @@ TEST(ChangeDetector, AShortWindowAloneConvincesNobody) {
   EXPECT_TRUE(detector.changed(0));
 }
 
-TEST(ChangeDetector, AWindowOfSecondsIsEnough) {
+TEST(ChangeDetector, AWindowOfSecondsSuffices) {
   ChangeDetector detector(known_baseline(), {{0.03}}, 16);
   WindowEstimate lost = window(6, 0.9);
   lost.start = lost.end - std::chrono::seconds(5);
@@ -147,7 +147,7 @@ TEST(ChangeDetector, AWindowOfSecondsIsEnough) {
   EXPECT_TRUE(detector.changed(0));
 }
 
-TEST(ChangeDetector, DoesNotCountWhatIsPulledTowardTheDesign) {
+TEST(ChangeDetector, IgnoresValuesPulledTowardTheDesign) {
   ChangeDetector detector(known_baseline(), {{0.03, 0.1}}, 16);
   for (double t = 3; t < 100; t += 0.5) {
     WindowEstimate pulled = window(t, 0.9);
@@ -157,7 +157,7 @@ TEST(ChangeDetector, DoesNotCountWhatIsPulledTowardTheDesign) {
   EXPECT_FALSE(detector.changed(0));
 }
 
-TEST(ChangeDetector, LeavesAloneWhatIsNotObservableNotWatchedOrWithoutBaseline) {
+TEST(ChangeDetector, IgnoresUnobservableAndUnwatchedElementsAndThoseWithoutBaseline) {
   ChangeDetector unwatched(known_baseline(), {Watched{}}, 16), unknown(Baseline(1), {{0.03}}, 16),
       quiet(known_baseline(), {{0.03}}, 16);
   for (double t = 3; t < 100; t += 0.5) {
@@ -172,7 +172,7 @@ TEST(ChangeDetector, LeavesAloneWhatIsNotObservableNotWatchedOrWithoutBaseline) 
 
 /// A building is learned while it hardly moves, its values pulled toward a design that is too
 /// stiff. It then moves in traffic and at last loses 5 %.
-TEST(Watch, WhatIsLearnedInWeakMotionIsNoChangeInTraffic) {
+TEST(Watch, ABaselineOfWeakMotionRaisesNoChangeInTraffic) {
   constexpr double kQuiet_s = 600, kDamage_s = 3300, kEnd_s = 3400, kSoon_s = 60;
   constexpr double kPull = 0.03, kPulledShare = 0.3;
   const ParameterTable table(daemon::table1());
@@ -207,7 +207,7 @@ TEST(Watch, WhatIsLearnedInWeakMotionIsNoChangeInTraffic) {
 
 /// Issue 9: 20 of 20, 90 % within 9 s, no false alarm in 20 frame-hours, 1 % of
 /// the other elements flagged. FRAMEWATCH_WATCH_RUNS=20 tests all of it.
-TEST(Watch, FindsATwentiethLostInOneFrameAndNothingElse) {
+TEST(Watch, FindsOnlyTheFrameThatLostATwentieth) {
   // Issue 38: at most .5 s later than the 4.92 s before it.
   constexpr double kMedian_s = 5.42, kLate_s = 9, kOthers = 0.01;
   constexpr int kUndamagedPerDamaged = 3;  // a minute of 20 frames each

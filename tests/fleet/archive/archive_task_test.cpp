@@ -27,7 +27,7 @@ ArchiveTask example(int number = 1) {
   return task;
 }
 
-TEST(ArchiveTask, ALineIsReadBackAsItWas) {
+TEST(ArchiveTask, ReadsBackItsLine) {
   const std::string line = manifest_line(example());
   EXPECT_TRUE(line.ends_with('\n'));
   std::string problem;
@@ -36,7 +36,7 @@ TEST(ArchiveTask, ALineIsReadBackAsItWas) {
   EXPECT_EQ(*read, example());
 }
 
-TEST(ArchiveTask, EveryLineThatIsNoTaskIsRefusedWithTheRule) {
+TEST(ArchiveTask, RefusesMalformedLinesWithTheRule) {
   const std::string times = "\t0\t0\t1";
   const std::pair<std::string, std::string> bad[] = {
       {"", "1 words between tabs"},
@@ -57,7 +57,7 @@ TEST(ArchiveTask, EveryLineThatIsNoTaskIsRefusedWithTheRule) {
   }
 }
 
-TEST(ArchiveTask, AManifestSaysInWhichLineItIsWrong) {
+TEST(ArchiveTask, ReportsTheLineOfAManifestsError) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("m.tsv");
   const auto refused = [&](const std::string& text) {
@@ -77,7 +77,7 @@ TEST(ArchiveTask, AManifestSaysInWhichLineItIsWrong) {
   EXPECT_EQ(read_manifest(path, problem)->size(), 2u);
 }
 
-TEST(ArchiveTask, TheKeyIsOfEverythingThatTheOutputDependsOn) {
+TEST(ArchiveTask, KeyCoversEverythingThatTheOutputDependsOn) {
   const std::string making = making_of(std::string(64, 'a'), std::string(64, 'b'));
   EXPECT_EQ(making, "aaaaaaaaaaaa-bbbbbbbbbbbb");
   const std::vector<std::string> digests{"1", "2"};

@@ -20,7 +20,7 @@ using daemon::kSecond_us;
 constexpr std::int64_t kHour_us = 3600 * kSecond_us;
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 
-/// Raw logs of these hours after the start, each of an hour where the next follows.
+/// Writes raw logs of these hours after the start. Each lasts an hour if the next one follows.
 std::vector<ArchiveLog> hours(const std::vector<int>& begins) {
   std::vector<ArchiveLog> out;
   for (const int h : begins)
@@ -33,13 +33,13 @@ ArchivePlan plan(int length_h, std::int64_t warm_up_s) {
   return {"/c.toml", "/out", length_h * std::int64_t{3600}, warm_up_s, "p-c"};
 }
 
-TEST(ArchiveLogs, TasksBeginAtMultiplesAndHaveTheLogsTheyNeed) {
+TEST(ArchiveLogs, TasksStartAtMultiplesWithTheirLogs) {
   const auto tasks = plan_tasks(plan(2, 600), hours({1, 2, 3, 4}));
   ASSERT_EQ(tasks.size(), 3u);
   EXPECT_EQ(tasks[0].from_us, kStart_us);
   EXPECT_EQ(tasks[0].to_us, kStart_us + 2 * kHour_us);
   EXPECT_EQ(tasks[0].warm_up_us, kStart_us - 600 * kSecond_us);
-  // The last windows of a task come a few samples later: the next log is needed too.
+  // The last windows of a task come a few samples later, so the next log is needed too.
   EXPECT_EQ(tasks[0].logs, (std::vector<std::string>{"1", "2"}));
   EXPECT_EQ(tasks[1].logs, (std::vector<std::string>{"1", "2", "3", "4"}));
   EXPECT_EQ(tasks[2].logs, (std::vector<std::string>{"3", "4"}));
@@ -48,21 +48,21 @@ TEST(ArchiveLogs, TasksBeginAtMultiplesAndHaveTheLogsTheyNeed) {
   EXPECT_NE(tasks[0].key, tasks[1].key);
 }
 
-TEST(ArchiveLogs, WhereThereIsNoLogThereIsNoTask) {
+TEST(ArchiveLogs, CreateNoTaskWithoutALog) {
   const auto tasks = plan_tasks(plan(1, 0), hours({0, 1000000}));
   ASSERT_EQ(tasks.size(), 2u);
   EXPECT_EQ(tasks[1].from_us, kStart_us + 1000000 * kHour_us);
   EXPECT_TRUE(plan_tasks(plan(1, 0), {}).empty());
 }
 
-TEST(ArchiveLogs, TimesBefore1970AreTimesToo) {
+TEST(ArchiveLogs, AcceptTimesBefore1970) {
   const auto tasks = plan_tasks(plan(1, 60), {{"old", -1'500'000, -500'000, ""}});
   ASSERT_EQ(tasks.size(), 1u);
   EXPECT_EQ(tasks[0].from_us, -kHour_us);
   EXPECT_EQ(tasks[0].to_us, 0);
 }
 
-TEST(ArchiveLogs, AHistorysDirectoryIsItsClosedRawLogs) {
+TEST(ArchiveLogs, TakeTheClosedRawLogsOfAHistory) {
   const test::TemporaryDirectory directory;
   const daemon::Config config = test::table_with_history(directory.path("h"));
   std::filesystem::create_directories(directory.path("h/raw"));
@@ -77,14 +77,14 @@ TEST(ArchiveLogs, AHistorysDirectoryIsItsClosedRawLogs) {
     EXPECT_TRUE(logs[0].path.ends_with("20261122T010000Z.lcmlog.zst"));
     EXPECT_EQ(logs[0].start_us, kStart_us + kHour_us);
     EXPECT_EQ(logs[0].end_us, kStart_us + 2 * kHour_us + kSecond_us);  // names are rounded down
-    EXPECT_EQ(logs[1].end_us, kStart_us + 26 * kHour_us);              // it cannot be read
+    EXPECT_EQ(logs[1].end_us, kStart_us + 26 * kHour_us);              // unreadable
     add_digests(logs, problems);
     EXPECT_TRUE(problems.empty());
     EXPECT_EQ(logs[0].sha256.size(), 64u);
   }
 }
 
-TEST(ArchiveLogs, OtherLogsAreReadForTheirTime) {
+TEST(ArchiveLogs, FindTheTimeOfOtherLogsByReading) {
   const test::TemporaryDirectory directory;
   const daemon::Config config = test::table_with_history(directory.path("h"));
   test::record_table_test(directory.path("rec.lcmlog"));
@@ -95,7 +95,7 @@ TEST(ArchiveLogs, OtherLogsAreReadForTheirTime) {
   EXPECT_NEAR(static_cast<double>(logs[0].end_us - logs[0].start_us), 12e6, 0.1e6);
 }
 
-TEST(ArchiveLogs, ARawLogThatNoOtherFollowsIsReadForItsEnd) {
+TEST(ArchiveLogs, FindTheEndOfTheLastRawLogByReading) {
   const test::TemporaryDirectory directory;
   daemon::Config config = test::table_with_history(directory.path("h"));
   config.history->compress = false;
@@ -113,7 +113,7 @@ TEST(ArchiveLogs, ARawLogThatNoOtherFollowsIsReadForItsEnd) {
   EXPECT_EQ(logs[0].end_us, kStart_us + 499 * 10'000 + 1);
 }
 
-TEST(ArchiveLogs, EveryProblemIsToldAtOnce) {
+TEST(ArchiveLogs, ReportEveryProblemAtOnce) {
   const test::TemporaryDirectory directory;
   const daemon::Config config = test::table_with_history(directory.path("h"));
   std::filesystem::create_directories(directory.path("empty"));

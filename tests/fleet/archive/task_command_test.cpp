@@ -86,7 +86,7 @@ class FleetTask : public testing::Test {
     test::write_file(manifest_, text);
   }
 
-  /// Exit status, and the lines that were printed.
+  /// Returns the exit status and the printed lines.
   std::pair<int, std::vector<Json>> run(const std::vector<int>& numbers) {
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
@@ -108,8 +108,8 @@ class FleetTask : public testing::Test {
   std::string said_;
 };
 
-/// Of filters that stay as the design has them: otherwise every task is tuned to its own logs.
-TEST_F(FleetTask, TasksTogetherAreTheWholeReplay) {
+/// Keeps the filters at the design; otherwise every task is tuned to its logs.
+TEST_F(FleetTask, AllTasksGiveTheWholeReplay) {
   std::string building = test::read_file(test::table_config());
   const std::string section = "[estimator]\n";
   building.insert(building.find(section) + section.size(), "self_tune = false\n");
@@ -156,7 +156,7 @@ TEST_F(FleetTask, IsTunedToItsLogsFirst) {
   EXPECT_NE(said_.find("task 1: tuned on the record first: "), std::string::npos) << said_;
 }
 
-TEST_F(FleetTask, WhatIsDoneIsNotDoneAgain) {
+TEST_F(FleetTask, SkipsFinishedTasks) {
   ASSERT_EQ(run({1}).first, 0) << said_;
   const std::string first = test::read_file(output(1));
   const auto written = fs::last_write_time(output(1));
@@ -164,11 +164,11 @@ TEST_F(FleetTask, WhatIsDoneIsNotDoneAgain) {
   EXPECT_EQ(status, 0);
   EXPECT_EQ(lines.at(0)["result"], "done_before");
   EXPECT_EQ(fs::last_write_time(output(1)), written);
-  // Without the output the line means nothing.
+  // The line does not count without the output.
   fs::remove(output(1));
   EXPECT_EQ(run({1}).second.at(0)["result"], "done");
   EXPECT_EQ(test::read_file(output(1)), first);
-  // Nor with another key, or torn.
+  // Nor with another key, or if damaged.
   for (const std::string& line : {std::string("{\"key\": \"x\", \"result\": \"done\"}"),
                                   std::string("{\"key\": \""), std::string("[]")}) {
     test::write_file(tasks_[0].out + ".json", line);
@@ -185,7 +185,7 @@ TEST_F(FleetTask, AnotherConfigurationNeedsAnotherManifest) {
   EXPECT_TRUE(fs::is_empty(directory_.path("out")));
 }
 
-TEST_F(FleetTask, OneThatFailsLeavesNothingAndHindersNoOther) {
+TEST_F(FleetTask, AFailedTaskLeavesNoFileAndStopsNoOther) {
   tasks_[0].logs = {directory_.path("none.lcmlog")};
   write_manifest();
   const auto [status, lines] = run({1, 2});
@@ -199,7 +199,7 @@ TEST_F(FleetTask, OneThatFailsLeavesNothingAndHindersNoOther) {
     EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos);
 }
 
-TEST_F(FleetTask, WhatIsIntactOfADamagedLogIsUsed) {
+TEST_F(FleetTask, UsesTheIntactPartOfADamagedLog) {
   std::string bytes = test::read_file(log_);
   bytes.replace(bytes.size() / 3, 100, std::string(100, '\x55'));
   test::write_file(log_, bytes);
@@ -209,7 +209,7 @@ TEST_F(FleetTask, WhatIsIntactOfADamagedLogIsUsed) {
   EXPECT_FALSE(lines[0]["notes"].empty());
 }
 
-TEST_F(FleetTask, ATimeWithoutSamplesIsDoneAndEmpty) {
+TEST_F(FleetTask, ATimeWithoutSamplesGivesAnEmptyOutput) {
   tasks_[0].from_us += 800 * kSecond_us;
   tasks_[0].to_us += 800 * kSecond_us;
   tasks_[0].warm_up_us = tasks_[0].from_us;
@@ -220,14 +220,14 @@ TEST_F(FleetTask, ATimeWithoutSamplesIsDoneAndEmpty) {
   EXPECT_TRUE(rows_of(output(1), INT64_MIN / 2, INT64_MAX / 2).empty());
 }
 
-TEST_F(FleetTask, TimesBetweenPeriodsAreRefused) {
+TEST_F(FleetTask, RefusesTimesBetweenPeriods) {
   tasks_[0].from_us += kSecond_us;
   write_manifest();
   EXPECT_EQ(run({1}).first, 1);
   EXPECT_NE(said_.find("multiples of the longest summary, 4 s"), std::string::npos) << said_;
 }
 
-TEST_F(FleetTask, NumbersThatTheManifestDoesNotHaveAreRefused) {
+TEST_F(FleetTask, RefusesNumbersBeyondTheManifest) {
   EXPECT_EQ(run({1, 99}).first, 2);
   EXPECT_NE(said_.find("has the tasks 1 to"), std::string::npos) << said_;
   EXPECT_TRUE(fs::is_empty(directory_.path("out")));
@@ -236,8 +236,8 @@ TEST_F(FleetTask, NumbersThatTheManifestDoesNotHaveAreRefused) {
   EXPECT_NE(said_.find("m.tsv:1: "), std::string::npos) << said_;
 }
 
-/// The program itself: killed at any time, and asked again.
-TEST_F(FleetTask, KilledAtAnyTimeItGivesTheSameOutputInTheEnd) {
+/// Runs the program, kills it at any time, and starts it again.
+TEST_F(FleetTask, GivesTheSameOutputAfterBeingKilled) {
   fs::create_directories(directory_.path("raw"));
   fs::copy_file(log_, directory_.path("raw/rec.lcmlog"));
   const std::string manifest = "$F fleet manifest building.toml OUT raw/rec.lcmlog --hours 1";
@@ -270,7 +270,7 @@ TEST_F(FleetTask, KilledAtAnyTimeItGivesTheSameOutputInTheEnd) {
   }
 }
 
-TEST_F(FleetTask, WhoComesSecondWaitsAndFindsItDone) {
+TEST_F(FleetTask, ASecondWorkerWaitsAndFindsTheTaskDone) {
   std::atomic<bool> has_run = false;
   std::thread second;
   {
@@ -290,7 +290,7 @@ TEST_F(FleetTask, WhoComesSecondWaitsAndFindsItDone) {
   EXPECT_NE(nowhere.take(directory_.path("none/x.lock")), "");
 }
 
-TEST_F(FleetTask, TheManifestCommandSaysEverythingThatIsWrong) {
+TEST_F(FleetTask, TheManifestCommandReportsEveryProblem) {
   const test::ShellResult said =
       test::shell(directory_, "$F fleet manifest building.toml out none.lcmlog nor.lcmlog");
   EXPECT_EQ(said.status, 2);

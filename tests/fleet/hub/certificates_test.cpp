@@ -27,7 +27,7 @@ class Certificates : public ::testing::Test {
   test::TemporaryDirectory folder_;
 };
 
-TEST_F(Certificates, ABuildingsRequestBecomesACertificateThatTheAuthorityStandsFor) {
+TEST_F(Certificates, SignsABuildingsRequest) {
   const Authority authority(path("."));
   ASSERT_EQ(authority.make(), "");
   ASSERT_EQ(make_request("kobe-03", path("k"), path("r")), "");
@@ -43,7 +43,7 @@ TEST_F(Certificates, ABuildingsRequestBecomesACertificateThatTheAuthorityStandsF
   }
 }
 
-TEST_F(Certificates, AServerIsOneAndHasItsAddresses) {
+TEST_F(Certificates, MarksAServerAndItsAddresses) {
   const Authority authority(path("."));
   ASSERT_EQ(authority.make(), "");
   ASSERT_EQ(authority.issue("hub1", {"hub1.example.org", "127.0.0.1"}), "");
@@ -53,7 +53,7 @@ TEST_F(Certificates, AServerIsOneAndHasItsAddresses) {
         << check;
 }
 
-TEST_F(Certificates, ARequestThatNamesSomebodyElseOrMoreIsRefused) {
+TEST_F(Certificates, RefusesARequestWithOtherNames) {
   const Authority authority(path("."));
   ASSERT_EQ(authority.make(), "");
   int number = 0;
@@ -73,7 +73,7 @@ TEST_F(Certificates, ARequestThatNamesSomebodyElseOrMoreIsRefused) {
   EXPECT_NE(authority.sign("kobe-03", path("absent"), path("x.pem")), "");
 }
 
-TEST_F(Certificates, ThereIsOneAuthority) {
+TEST_F(Certificates, CreatesOnlyOneAuthority) {
   const Authority authority(path("."));
   ASSERT_EQ(authority.make(), "");
   const std::string before = test::read_file(path("ca.key"));

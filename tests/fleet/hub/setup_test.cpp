@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr std::size_t kParts = 10;  // five streams, a consumer each
 
-/// Keeps configurations as JetStream does.
+/// Keeps configurations like JetStream.
 struct FakeJetStream {
   std::map<std::string, json> parts;  // by STREAM or STREAM.CONSUMER
   int changes = 0;
@@ -45,7 +45,7 @@ struct FakeJetStream {
       if (const std::string name = after(change); !name.empty()) {
         const json request = json::parse(text);
         parts[name] = request.contains("config") ? request["config"] : request;
-        // As the server does: what is nought is left out, and it says more than it was told.
+        // Like the server, leaves out zeros and adds fields.
         for (auto at = parts[name].begin(); at != parts[name].end();)
           at = *at == json(false) ? parts[name].erase(at) : std::next(at);
         parts[name]["compression"] = "none";
@@ -59,7 +59,7 @@ struct FakeJetStream {
   }
 };
 
-TEST(Setup, MakesWhatIsMissingAndLeavesTheRest) {
+TEST(Setup, CreatesMissingPartsAndLeavesTheRest) {
   FakeJetStream hub;
   const auto parts = hub_parts(3, 1000);
   ASSERT_EQ(parts.size(), kParts);
@@ -72,7 +72,7 @@ TEST(Setup, MakesWhatIsMissingAndLeavesTheRest) {
   EXPECT_EQ(second.lines.front(), "FW_EVENT: correct");
 }
 
-TEST(Setup, SaysWhatDiffersAndChangesItUnlessOnlyLooking) {
+TEST(Setup, ReportsDifferencesAndChangesThemUnlessOnlyChecking) {
   FakeJetStream hub;
   (void)set_up(hub_parts(3, 1000), hub.asker(), false);
   hub.parts["FW_EVENT"]["max_bytes"] = 5;
@@ -84,7 +84,7 @@ TEST(Setup, SaysWhatDiffersAndChangesItUnlessOnlyLooking) {
   EXPECT_EQ(set_up(hub_parts(3, 1000), hub.asker(), true).changed, 0);
 }
 
-TEST(Setup, ARefusalIsToldForEachPartAndTheOthersAreTried) {
+TEST(Setup, ReportsEachRefusalAndTriesTheOtherParts) {
   FakeJetStream hub;
   hub.refuses = true;
   const SetupOutcome out = set_up(hub_parts(3, 1000), hub.asker(), false);
@@ -92,7 +92,7 @@ TEST(Setup, ARefusalIsToldForEachPartAndTheOthersAreTried) {
   EXPECT_NE(out.problems.front().find("insufficient storage"), std::string::npos);
 }
 
-TEST(Setup, WhatIsNoJetStreamIsAProblemAndNoCrash) {
+TEST(Setup, ReportsMalformedAnswersOfTheServer) {
   for (const char* answer :
        {"", "[]", "null", R"({"error":5})", R"({"error":{"code":"x"}})", "{"}) {
     const SetupOutcome out = set_up(
@@ -105,7 +105,7 @@ TEST(Setup, WhatIsNoJetStreamIsAProblemAndNoCrash) {
   }
 }
 
-TEST(Setup, TheRawStreamRefusesWhenItIsFullAndTheOthersForget) {
+TEST(Setup, AFullRawStreamRefusesAndOtherStreamsDropTheOldest) {
   for (const HubPart& part : hub_parts(3, 1000)) {
     if (!part.consumer.empty()) continue;
     const json config = json::parse(part.config);

@@ -8,7 +8,7 @@
 namespace framewatch::fleet {
 namespace users_file_test {
 
-TEST(UsersFile, ABuildingMayWriteReadAndHearItsOwnAlone) {
+TEST(UsersFile, ABuildingMayUseOnlyItsOwnSubjects) {
   const std::string text = users_text({"kobe-03"});
   for (const char* line :
        {R"(user: "CN=kobe-03")", R"(publish: [ "fw.up.kobe-03.>" ])",
@@ -16,7 +16,7 @@ TEST(UsersFile, ABuildingMayWriteReadAndHearItsOwnAlone) {
     EXPECT_NE(text.find(line), std::string::npos) << line;
 }
 
-TEST(UsersFile, KeepsWhoIsLetIn) {
+TEST(UsersFile, KeepsAdmittedUsers) {
   const test::TemporaryDirectory folder;
   UsersFile users(folder.path("."));
   ASSERT_EQ(users.read(), "");
@@ -34,7 +34,7 @@ TEST(UsersFile, KeepsWhoIsLetIn) {
   EXPECT_NE(text.find("CN=b\""), std::string::npos);
 }
 
-TEST(UsersFile, ANameThatWouldBeAnotherUserIsRefusedWithItsLine) {
+TEST(UsersFile, RefusesAConflictingNameWithItsLine) {
   for (const char* bad : {"operator", "worker", "page", "admin", "all", "A", "a b", "a\" }", "*"}) {
     const test::TemporaryDirectory folder;
     test::write_file(folder.path("buildings"), std::string("good\n") + bad + "\n");

@@ -10,7 +10,7 @@
 namespace framewatch::fleet {
 namespace address_test {
 
-TEST(Key, IsMadeOfContent) {
+TEST(Key, DependsOnTheContent) {
   event_t e{};
   e.kind = "stiffness_change";
   e.id = 7;
@@ -23,13 +23,13 @@ TEST(Key, IsMadeOfContent) {
   EXPECT_EQ(raw_key("kobe-03", "r17", 3), "kobe-03/raw/r17/3");
 }
 
-TEST(Key, AKindThatIsNoWordMakesNoOtherKey) {
+TEST(Key, AMalformedKindCannotImitateAnotherKey) {
   const std::string key = message_key("a", EventKey{"x/1\r\nNats-Msg-Id: y%", 2, 3, 0});
   EXPECT_EQ(key, "a/event/x%2F1%0D%0ANats-Msg-Id:%20y%25/2/3/0");
   EXPECT_NE(message_key("a", EventKey{"x", 1, 2, 0}), message_key("a", EventKey{"x/1", 2, 0, 0}));
 }
 
-TEST(Key, IsSealedByWhoHasTheSecretAndByTheContent) {
+TEST(Key, IsSealedBySecretAndContent) {
   const std::vector<std::uint8_t> content{1, 2, 3}, other{1, 2, 4};
   const std::string key = "kobe-03/summary/600/0", sealed = sealed_key(key, "mine", content);
   EXPECT_EQ(sealed, sealed_key(key, "mine", content));
@@ -44,7 +44,7 @@ TEST(Key, IsSealedByWhoHasTheSecretAndByTheContent) {
   EXPECT_EQ(key_of_sealed(sealed_key(odd, "mine", content)), odd);
 }
 
-TEST(Key, PartsSayWhoseItIs) {
+TEST(Key, PartsNameItsBuilding) {
   const auto parts = key_parts("kobe-03/summary/600/0");
   ASSERT_TRUE(parts);
   EXPECT_EQ(parts->building, "kobe-03");
@@ -70,7 +70,7 @@ TEST(Subject, NamesBuildingAndKind) {
   EXPECT_EQ(down->building, "all");
 }
 
-TEST(Subject, WhatIsNoBuildingIsRefused) {
+TEST(Subject, RefusesMalformedBuildings) {
   for (const char* good : {"a", "kobe-03", "0", "abcdefghijklmnopqrstuvwxyz012345"})
     EXPECT_TRUE(is_building_name(good)) << good;
   for (const char* bad : {"", "all", "Kobe", "kobe 3", "kobe.3", "kobe*", "kob\xc3\xa9", ">",
@@ -78,7 +78,7 @@ TEST(Subject, WhatIsNoBuildingIsRefused) {
     EXPECT_FALSE(is_building_name(bad)) << bad;
 }
 
-TEST(Subject, WhatIsNoSubjectHasNoParts) {
+TEST(Subject, AMalformedSubjectHasNoParts) {
   for (const char* bad : {"", "fw.up", "fw.up.", "fw.up.kobe", "fw.up.kobe.", "fw.up..event",
                           "fw.up.kobe..event", "fw.up.kobe.event.", "fw.up.kobe.*",
                           "fw.up.all.event", "fw.down.kobe.ping", "$JS.API.INFO", "fw.up.kobe.a b"})

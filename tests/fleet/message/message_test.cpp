@@ -16,7 +16,7 @@ Bytes repeated(std::size_t count) {
   return out;
 }
 
-TEST(Message, WhatIsPackedComesBack) {
+TEST(Message, UnpacksWhatWasPacked) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{100'000}}) {
     const Message m = packed("fw.up.a.event", "a/event/1", "event_t", repeated(size), "abc");
     std::string why;
@@ -29,7 +29,7 @@ TEST(Message, WhatIsPackedComesBack) {
   }
 }
 
-TEST(Message, WhatUnpacksToTooMuchIsRefusedBeforeMemoryIsTaken) {
+TEST(Message, RefusesTooLargeContentBeforeAllocating) {
   const Message m = packed("s", "k", "raw", repeated(kMax + 1), "");
   EXPECT_LT(m.bytes.size(), kMax / 10);
   std::string why;
@@ -37,7 +37,7 @@ TEST(Message, WhatUnpacksToTooMuchIsRefusedBeforeMemoryIsTaken) {
   EXPECT_NE(why.find("more than"), std::string::npos) << why;
 }
 
-TEST(Message, DamagedBytesAndForeignEncodingsAreRefused) {
+TEST(Message, RefusesDamagedBytesAndForeignEncodings) {
   Message m = packed("s", "k", "raw", repeated(10'000), "");
   ASSERT_EQ(m.header(header::kEncoding), "zstd");
   std::string why;

@@ -30,7 +30,7 @@ class SdsArchive : public testing::Test {
     return add_to_sds(root_, std::vector<std::uint8_t>(bytes.begin(), bytes.end()),
                       {"JP", "KOBE3"});
   }
-  /// Samples of a file by libmseed itself: of how many runs without a gap, and these.
+  /// Samples of a file, read with libmseed, and the number of runs without a gap.
   std::vector<std::vector<std::int32_t>> read(const std::string& file) {
     std::vector<std::vector<std::int32_t>> out;
     MSTraceList* list = nullptr;
@@ -52,7 +52,7 @@ class SdsArchive : public testing::Test {
   std::int64_t start_us_ = 0;
 };
 
-TEST_F(SdsArchive, AStretchOverMidnightIsInTwoFilesSampleBySample) {
+TEST_F(SdsArchive, SplitsAStretchAtMidnight) {
   const SdsOutcome done = add(kMidnight_us - 5 * kSecond_us, 10);
   EXPECT_EQ(done.problem, "");
   EXPECT_EQ(done.samples, 1000);
@@ -69,7 +69,7 @@ TEST_F(SdsArchive, AStretchOverMidnightIsInTwoFilesSampleBySample) {
   EXPECT_EQ(after[0].size(), 500u);
 }
 
-TEST_F(SdsArchive, TheSameAgainChangesNothing) {
+TEST_F(SdsArchive, AddingAStretchAgainChangesNothing) {
   ASSERT_EQ(add(kMidnight_us, 10).files.size(), 1u);
   const std::string bytes = test::read_file(root_ + kDay);
   const SdsOutcome again = add(kMidnight_us, 10);
@@ -78,7 +78,7 @@ TEST_F(SdsArchive, TheSameAgainChangesNothing) {
   EXPECT_EQ(test::read_file(root_ + kDay), bytes);
 }
 
-TEST_F(SdsArchive, StretchesThatOverlapBecomeOne) {
+TEST_F(SdsArchive, JoinsOverlappingStretches) {
   ASSERT_EQ(add(kMidnight_us + 5 * kSecond_us, 10).problem, "");
   const SdsOutcome more = add(kMidnight_us, 10);
   EXPECT_EQ(more.samples, 500);
@@ -86,16 +86,16 @@ TEST_F(SdsArchive, StretchesThatOverlapBecomeOne) {
   ASSERT_EQ(runs.size(), 1u);
   EXPECT_EQ(runs[0].size(), 1500u);
   EXPECT_EQ(runs[0][499], 499);
-  EXPECT_EQ(runs[0][500], 0);  // what was there first stays
+  EXPECT_EQ(runs[0][500], 0);  // existing samples stay
 }
 
-TEST_F(SdsArchive, AGapStaysAGap) {
+TEST_F(SdsArchive, KeepsAGap) {
   ASSERT_EQ(add(kMidnight_us, 2).problem, "");
   ASSERT_EQ(add(kMidnight_us + 7 * kSecond_us, 2).problem, "");
   EXPECT_EQ(read(kDay).size(), 2u);
 }
 
-TEST_F(SdsArchive, WhatIsNoMiniseedChangesNothing) {
+TEST_F(SdsArchive, LeavesForeignFilesAlone) {
   test::SeedSpan floats;
   floats.encoding = DE_FLOAT32;
   floats.start_us = kMidnight_us;
@@ -115,7 +115,7 @@ TEST_F(SdsArchive, WhatIsNoMiniseedChangesNothing) {
   EXPECT_EQ(test::read_file(root_ + kDay), "damaged");
 }
 
-TEST(SdsCodes, AreThoseOfSeed) {
+TEST(SdsCodes, FollowSeed) {
   EXPECT_TRUE(is_network_code("JP") && is_station_code("KOBE3"));
   for (const char* bad : {"", "jp", "JPN", "J/"}) EXPECT_FALSE(is_network_code(bad)) << bad;
   for (const char* bad : {"", "KOBE-3", "KOBE33", "../.."})

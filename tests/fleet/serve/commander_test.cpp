@@ -16,7 +16,7 @@ namespace commander_test {
 
 constexpr std::int64_t kUtc_us = 1'795'305'600'000'000;
 
-/// Buildings answer as answers_ says; one that is not in it says nothing.
+/// Buildings give the answers in answers_; others do not answer.
 class Line : public Link {
  public:
   bool up = true;
@@ -54,7 +54,7 @@ class CommanderAtWork : public testing::Test {
   Commander commander_{line_, [this](const CommandResult& r) { results_.push_back(r); }};
 };
 
-TEST_F(CommanderAtWork, EachBuildingIsAskedAndItsAnswerIsItsOwn) {
+TEST_F(CommanderAtWork, AsksEachBuildingAndReturnsItsAnswer) {
   ASSERT_TRUE(commander_.give(order("minutes", R"({"from_us":1,"to_us":2})")));
   commander_.step(0, kUtc_us);
   ASSERT_EQ(line_.sent.size(), 2u);
@@ -75,7 +75,7 @@ TEST_F(CommanderAtWork, EachBuildingIsAskedAndItsAnswerIsItsOwn) {
   EXPECT_EQ(results_[1].answer.find('\n'), std::string::npos);
 }
 
-TEST_F(CommanderAtWork, WhoIsAwayIsSaid) {
+TEST_F(CommanderAtWork, ReportsAbsentBuildings) {
   ASSERT_TRUE(commander_.give(order("ping")));
   commander_.step(0, kUtc_us);
   line_.nobody(0);
@@ -90,7 +90,7 @@ TEST_F(CommanderAtWork, WhoIsAwayIsSaid) {
   EXPECT_EQ(results_.size(), 2u);
 }
 
-TEST_F(CommanderAtWork, WithoutAHubNothingIsKeptForLater) {
+TEST_F(CommanderAtWork, KeepsNoCommandWithoutAHub) {
   line_.up = false;
   ASSERT_TRUE(commander_.give(order("ping")));
   commander_.step(0, kUtc_us);
@@ -101,7 +101,7 @@ TEST_F(CommanderAtWork, WithoutAHubNothingIsKeptForLater) {
   EXPECT_TRUE(line_.sent.empty());
 }
 
-TEST_F(CommanderAtWork, NonsenseIsNoAnswer) {
+TEST_F(CommanderAtWork, IgnoresMalformedAnswers) {
   for (const std::string& text : {std::string("nonsense"), std::string(R"({"ok":1})"),
                                   std::string(70'000, ' '), std::string("[]")}) {
     results_.clear();
@@ -115,13 +115,13 @@ TEST_F(CommanderAtWork, NonsenseIsNoAnswer) {
   }
 }
 
-TEST_F(CommanderAtWork, TooManyAreRefused) {
+TEST_F(CommanderAtWork, RefusesTooManyCommands) {
   for (std::size_t i = 0; i < Commander::kMaxOrders; ++i)
     ASSERT_TRUE(commander_.give(order("ping")));
   EXPECT_FALSE(commander_.give(order("ping")));
 }
 
-TEST_F(CommanderAtWork, AnAcknowledgementIsTheMessageOfTheDaemon) {
+TEST_F(CommanderAtWork, SendsAnAcknowledgementAsTheDaemonsMessage) {
   ASSERT_TRUE(commander_.give(order("acknowledge", R"({"id":7,"comment":"seen"})")));
   commander_.step(0, kUtc_us);
   const auto request = drivers::decoded<acknowledge_t>(line_.sent[0].bytes);
@@ -131,7 +131,7 @@ TEST_F(CommanderAtWork, AnAcknowledgementIsTheMessageOfTheDaemon) {
   EXPECT_EQ(request->comment, "seen");
 }
 
-TEST(CommandContent, SaysWhatIsWrong) {
+TEST(CommandContent, RefusesMalformedCommandsWithTheReason) {
   std::string why;
   for (const CommandWords& words :
        {CommandWords{"erase", "", "", "", "", ""}, CommandWords{"minutes", "1", "x", "", "", ""},

@@ -70,7 +70,7 @@ json body(const std::string& answer) {
 
 constexpr const char* kNoDatabase = "host=/nowhere user=nobody";
 
-TEST(FleetServer, ThePageIsWholeAndItsPolicyStrict) {
+TEST(FleetServer, ServesTheWholePageWithAStrictPolicy) {
   Page page(kNoDatabase, false);
   const std::string index = page.get("/");
   EXPECT_TRUE(has(index, "200 OK")) << index;
@@ -88,7 +88,7 @@ TEST(FleetServer, ThePageIsWholeAndItsPolicyStrict) {
   EXPECT_TRUE(has(page.get("/../people"), "404"));
 }
 
-TEST(FleetServer, WithPeopleNobodyElseLooks) {
+TEST(FleetServer, AdmitsOnlyListedPeople) {
   Page page(kNoDatabase);
   for (const char* path : {"/", "/overview.json", "/fleet.js", "/journal.json"})
     EXPECT_TRUE(has(page.get(path), "403")) << path;
@@ -102,7 +102,7 @@ TEST(FleetServer, WithPeopleNobodyElseLooks) {
             "operator");
 }
 
-TEST(FleetServer, OtherNamesMethodsAndPagesAreRefused) {
+TEST(FleetServer, RefusesOtherNamesMethodsAndPages) {
   Page page(kNoDatabase);
   EXPECT_TRUE(has(page.post("/overview.json", as(kOperator)), "405"));
   EXPECT_TRUE(has(
@@ -112,7 +112,7 @@ TEST(FleetServer, OtherNamesMethodsAndPagesAreRefused) {
   EXPECT_TRUE(page.given.empty());
 }
 
-TEST(FleetServer, WithoutDatabaseItSaysSo) {
+TEST(FleetServer, ReportsAMissingDatabase) {
   Page page(kNoDatabase, false);
   for (const char* path : {"/overview.json", "/building.json?name=a", "/earthquake.json?time_us=1",
                            "/earthquakes.json?days=3", "/journal.json"}) {
@@ -122,7 +122,7 @@ TEST(FleetServer, WithoutDatabaseItSaysSo) {
   }
 }
 
-TEST(FleetServer, ArgumentsAreChecked) {
+TEST(FleetServer, ChecksArguments) {
   Page page(kNoDatabase, false);
   for (const char* path : {"/building.json", "/building.json?name=A'B",
                            "/series.json?name=a&parameter=k&from_us=2&to_us=1",
@@ -152,7 +152,7 @@ class FleetServerOnPostgres : public OnPostgres {
   }
 };
 
-TEST_F(FleetServerOnPostgres, AnOperatorsCommandIsInTheJournalBeforeItIsSent) {
+TEST_F(FleetServerOnPostgres, WritesACommandToTheJournalBeforeSendingIt) {
   Page page(where_);
   EXPECT_TRUE(has(page.post("/command?building=a&verb=ping", as(kViewer)), "403"));
   EXPECT_TRUE(has(page.post("/command?building=nobody&verb=ping", as(kOperator)), "404"));
@@ -182,7 +182,7 @@ TEST_F(FleetServerOnPostgres, AnOperatorsCommandIsInTheJournalBeforeItIsSent) {
             "too many commands are waiting: try again later");
 }
 
-TEST_F(FleetServerOnPostgres, AnOverviewThatIsTheSameIsNotSentAgain) {
+TEST_F(FleetServerOnPostgres, DoesNotResendAnUnchangedOverview) {
   Page page(where_, false, false);
   const json overview = body(page.get("/overview.json"));
   ASSERT_EQ(overview["buildings"].size(), 2u) << overview;

@@ -26,7 +26,7 @@ class PeopleFile : public testing::Test {
   People people_;
 };
 
-TEST_F(PeopleFile, ATokenIsItsPersonsAlone) {
+TEST_F(PeopleFile, ATokenBelongsToOnePerson) {
   People written;
   written.put({"alice", Role::operator_, daemon::sha256(kToken)});
   written.put({"bob@example.org", Role::viewer, daemon::sha256("other")});
@@ -52,12 +52,12 @@ TEST_F(PeopleFile, ANewTokenReplacesTheOldOne) {
   EXPECT_FALSE(people_.remove("alice"));
 }
 
-TEST_F(PeopleFile, RemarksAndEmptyLinesAreNobody) {
+TEST_F(PeopleFile, IgnoresCommentsAndEmptyLines) {
   EXPECT_EQ(read("# people\n\n  \n"), "");
   EXPECT_TRUE(people_.all().empty());
 }
 
-TEST_F(PeopleFile, ABrokenFileLetsNobodyIn) {
+TEST_F(PeopleFile, ABrokenFileAdmitsNobody) {
   const std::string digest(64, 'a'), good = "alice operator " + digest + "\n";
   for (const auto& [text, why] :
        {std::pair(good + "bob viewer\n", ":2: must be NAME ROLE SHA256"),

@@ -13,7 +13,7 @@
 namespace framewatch::fleet {
 namespace person_command_test {
 
-TEST(PersonCommand, GivesATokenAndTakesItBack) {
+TEST(PersonCommand, CreatesAndRemovesAToken) {
   const test::TemporaryDirectory folder;
   const std::string file = folder.path("people");
   testing::internal::CaptureStdout();
@@ -38,7 +38,7 @@ class DescribeCommand : public OnPostgres {
   }
 };
 
-TEST_F(DescribeCommand, SaysWhatABuildingIsAndKeepsTheRest) {
+TEST_F(DescribeCommand, ChangesGivenValuesAndKeepsTheRest) {
   DescribeArguments a;
   a.building = "kobe-03";
   a.database = where_;

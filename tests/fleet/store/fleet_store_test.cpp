@@ -20,7 +20,7 @@ constexpr double kMinPerSecond = 1000;  // summaries of 120 parameters, a second
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 
-/// On a real server: ./test --fleet starts one, FRAMEWATCH_POSTGRES says where.
+/// Tests with a real server: ./test --fleet starts one and sets FRAMEWATCH_POSTGRES.
 class FleetStoreOnServer : public testing::Test {
  protected:
   void SetUp() override {
@@ -60,7 +60,7 @@ summary_t summary(std::int64_t start_us, int windows = 10, std::size_t parameter
   return s;
 }
 
-TEST_F(FleetStoreOnServer, WhatComesTwiceIsThereOnce) {
+TEST_F(FleetStoreOnServer, StoresARepeatedMessageOnce) {
   FleetStore store;
   ASSERT_EQ(store.open(where_), "");
   FleetBatch batch;
@@ -82,7 +82,7 @@ TEST_F(FleetStoreOnServer, WhatComesTwiceIsThereOnce) {
   EXPECT_EQ(number("SELECT count(*) FROM building"), "2");
 }
 
-TEST_F(FleetStoreOnServer, APeriodThatGrewIsTakenAnewAndNotTheOtherWayRound) {
+TEST_F(FleetStoreOnServer, ReplacesAPeriodOnlyByOneWithMoreWindows) {
   FleetStore store;
   ASSERT_EQ(store.open(where_), "");
   FleetBatch batch;
@@ -93,7 +93,7 @@ TEST_F(FleetStoreOnServer, APeriodThatGrewIsTakenAnewAndNotTheOtherWayRound) {
   EXPECT_EQ(number("SELECT windows FROM summary"), "20");
 }
 
-TEST_F(FleetStoreOnServer, ABatchIsStoredWholeOrNotAtAll) {
+TEST_F(FleetStoreOnServer, StoresABatchWholeOrNotAtAll) {
   FleetStore store;
   ASSERT_EQ(store.open(where_), "");
   FleetBatch batch;
@@ -109,7 +109,7 @@ TEST_F(FleetStoreOnServer, ABatchIsStoredWholeOrNotAtAll) {
   EXPECT_FALSE(store.is_of_values());
 }
 
-TEST_F(FleetStoreOnServer, SeveralWorkersBeginAtOnceAndShareNothing) {
+TEST_F(FleetStoreOnServer, SeveralWorkersStartAtOnce) {
   std::vector<std::thread> workers;
   std::vector<std::string> problems(4);
   for (std::size_t w = 0; w < problems.size(); ++w)
@@ -129,7 +129,7 @@ TEST_F(FleetStoreOnServer, SeveralWorkersBeginAtOnceAndShareNothing) {
   EXPECT_EQ(number("SELECT count(*) FROM summary"), "20");
 }
 
-TEST_F(FleetStoreOnServer, ANewerDatabaseIsLeftAlone) {
+TEST_F(FleetStoreOnServer, LeavesANewerDatabaseAlone) {
   FleetStore store;
   ASSERT_EQ(store.open(where_), "");
   ASSERT_TRUE(look_.execute("UPDATE schema_version SET version = 99"));
@@ -148,7 +148,7 @@ TEST_F(FleetStoreOnServer, IsFastEnough) {
           {"b" + std::to_string(i), summary(kStart_us + b * 600'000'000, 10, 120)});
   const double began_s = daemon::process_usage().cpu_s;
   for (const FleetBatch& batch : batches) ASSERT_EQ(store.add(batch), "");
-  // Its own processor time: the machine may be busy.
+  // Processor time, because the machine may be busy.
   const double took_s = daemon::process_usage().cpu_s - began_s;
   const double rate = kBatches * kEach / took_s;
   std::printf("%.0f summaries a second of processor\n", rate);

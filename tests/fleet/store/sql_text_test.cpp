@@ -12,7 +12,7 @@
 namespace framewatch::fleet {
 namespace sql_text_test {
 
-TEST(SqlText, ArraysAreAsPostgresReadsThem) {
+TEST(SqlText, WritesArraysAsPostgresReadsThem) {
   EXPECT_EQ(sql_array(std::vector<std::int32_t>{1, -2}), "{1,-2}");
   EXPECT_EQ(sql_array(std::vector<std::int64_t>{}), "{}");
   EXPECT_EQ(sql_array(std::vector<double>{0.1, std::numeric_limits<double>::quiet_NaN(),
@@ -25,7 +25,7 @@ TEST(SqlText, ArraysAreAsPostgresReadsThem) {
   EXPECT_EQ(sql_bytes(std::vector<std::uint8_t>{0, 255, 16}), "\\x00ff10");
 }
 
-TEST(SqlText, EveryTimeIsInTheMonthThatHoldsIt) {
+TEST(SqlText, PutsEveryTimeIntoItsMonth) {
   EXPECT_EQ(month_of(1'795'305'600'000'000).table, "summary_2026_11");
   EXPECT_EQ(month_of(0).table, "summary_1970_01");
   for (const std::int64_t time_us :
@@ -42,7 +42,7 @@ TEST(SqlText, EveryTimeIsInTheMonthThatHoldsIt) {
   EXPECT_EQ(month_of(1'798'761'600'000'000).table, "summary_2027_01");
 }
 
-TEST(SqlText, WithoutAServerTheReasonIsToldAndNothingThrows) {
+TEST(SqlText, ReportsAMissingServerWithoutThrowing) {
   Database database;
   EXPECT_FALSE(database.open("host=/nonexistent dbname=none"));
   EXPECT_NE(database.error().find("/nonexistent"), std::string::npos) << database.error();

@@ -20,8 +20,8 @@
 
 namespace framewatch::fleet {
 
-/// A PostgreSQL of this process's own, on a Unix socket in a temporary folder; ends with it. Where
-/// FRAMEWATCH_POSTGRES names one, that one, emptied.
+/// A PostgreSQL of this process on a Unix socket in a temporary folder. Ends with the process. If
+/// FRAMEWATCH_POSTGRES names one, that one is emptied and used.
 class OwnPostgres {
  public:
   static OwnPostgres& instance() {
@@ -29,7 +29,7 @@ class OwnPostgres {
     return one;
   }
   const std::string& where() const { return where_; }
-  /// Empty when it runs.
+  /// Returns the problem; empty if it runs.
   const std::string& why_not() const { return why_not_; }
 
  private:
@@ -96,7 +96,7 @@ class OwnPostgres {
   pid_t child_ = -1;
 };
 
-/// On an empty database.
+/// Starts with an empty database.
 class OnPostgres : public testing::Test {
  protected:
   void SetUp() override {

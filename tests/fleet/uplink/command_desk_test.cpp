@@ -9,7 +9,7 @@ namespace command_desk_test {
 
 class Commands : public test::UplinkTest {
  protected:
-  /// As the page of the hub sends it.
+  /// Returns a command as the hub's page sends it.
   Message command(const std::string& verb, const std::string& request, const std::string& text) {
     Message m;
     m.subject = "fw.down.a." + verb;
@@ -20,7 +20,7 @@ class Commands : public test::UplinkTest {
     m.bytes.assign(text.begin(), text.end());
     return m;
   }
-  /// The answer; empty when there was none.
+  /// Returns the answer; empty if there is none.
   std::string answer(const Message& m) {
     hub_.answered.clear();
     hub_.bring(m);
@@ -37,13 +37,13 @@ std::string range(std::int64_t from_us, std::int64_t to_us) {
   return fmt::format(R"({{"from_us":{},"to_us":{}}})", from_us, to_us);
 }
 
-TEST_F(Commands, ListensForItsOwnAndForThoseToEveryBuilding) {
+TEST_F(Commands, ListensForItsOwnAndCommonCommands) {
   begin();
   EXPECT_EQ(hub_.subjects, (std::vector<std::string>{"fw.down.a.>", "fw.down.all.>"}));
   EXPECT_EQ(answer(command("ping", "r1", "")), kDone);
 }
 
-TEST_F(Commands, AnAcknowledgementGoesToTheDaemonWithTheNameOfWhoGaveIt) {
+TEST_F(Commands, PassesAnAcknowledgementWithItsAuthorToTheDaemon) {
   begin();
   acknowledge_t request{};
   request.id = 3;
@@ -60,7 +60,7 @@ TEST_F(Commands, AnAcknowledgementGoesToTheDaemonWithTheNameOfWhoGaveIt) {
             std::string::npos);
 }
 
-TEST_F(Commands, IsObeyedOnceHoweverOftenItComes) {
+TEST_F(Commands, ObeysARepeatedCommandOnce) {
   begin();
   const auto bytes = drivers::encoded(acknowledge_t{});
   const Message m = command("acknowledge", "r1", {bytes.begin(), bytes.end()});
@@ -73,7 +73,7 @@ TEST_F(Commands, IsObeyedOnceHoweverOftenItComes) {
   EXPECT_EQ(acknowledged_.size(), 1U);
 }
 
-TEST_F(Commands, WhatTheBuildingDoesNotAcceptIsRefusedAndNothingHappens) {
+TEST_F(Commands, RefusesCommandsThatTheBuildingForbids) {
   settings_.accept = {"raw"};
   begin();
   const auto bytes = drivers::encoded(acknowledge_t{});
@@ -84,7 +84,7 @@ TEST_F(Commands, WhatTheBuildingDoesNotAcceptIsRefusedAndNothingHappens) {
   EXPECT_EQ(uplink_->status(now()).commands_refused, 2);
 }
 
-TEST_F(Commands, AnOldOneAndOneWithoutANameAreRefused) {
+TEST_F(Commands, RefusesOldAndAnonymousCommands) {
   begin();
   const std::string good = range(0, 1);
   const auto refused = [&](const std::string& number, auto change) {
@@ -107,7 +107,7 @@ TEST_F(Commands, AnOldOneAndOneWithoutANameAreRefused) {
   EXPECT_TRUE(refused("r8", [](Message& m) { m.bytes.assign(70'000, ' '); }));
 }
 
-TEST_F(Commands, MalformedStretchesAreRefused) {
+TEST_F(Commands, RefusesMalformedStretches) {
   begin();
   int number = 0;
   for (const std::string& bad :
@@ -119,7 +119,7 @@ TEST_F(Commands, MalformedStretchesAreRefused) {
         << bad;
 }
 
-TEST_F(Commands, ResendSendsWhatIsThereAgain) {
+TEST_F(Commands, ResendSendsStoredMessagesAgain) {
   for (int i = 0; i < 10; ++i) add_event(i, test::kStart_us + i * test::kHour_us);
   begin();
   run(5);
@@ -131,8 +131,9 @@ TEST_F(Commands, ResendSendsWhatIsThereAgain) {
   EXPECT_EQ(kept_twice(), 3U);
 }
 
-// Within minutes a stream takes one Nats-Msg-Id once, and it is the database that lacks something.
-TEST_F(Commands, WhatIsSentAgainOnOrderIsNoRepetitionToTheHub) {
+// A stream accepts one Nats-Msg-Id only once within minutes, but here the database lacks the
+// message.
+TEST_F(Commands, TheHubAcceptsMessagesSentAgainOnCommand) {
   secret_ = "mine";
   for (int i = 0; i < 10; ++i) add_event(i, test::kStart_us + i * test::kHour_us);
   begin();
@@ -146,7 +147,7 @@ TEST_F(Commands, WhatIsSentAgainOnOrderIsNoRepetitionToTheHub) {
   EXPECT_EQ(kept_twice(), 0U);
 }
 
-TEST_F(Commands, MinutesThatAreAskedForAreSentTheFutureOnesToo) {
+TEST_F(Commands, SendsRequestedMinutesIncludingFutureOnes) {
   add_hour(test::kStart_us);
   begin();
   run(3);

@@ -13,7 +13,7 @@ namespace newest_messages_test {
 
 class NewestRules : public test::UplinkTest {};
 
-TEST_F(NewestRules, WhatIsAcknowledgedInTheBuildingIsSaidWhenItChanges) {
+TEST_F(NewestRules, ReportsChangesOfLocalAcknowledgements) {
   const auto said = [&] {
     return std::count_if(hub_.published.begin(), hub_.published.end(),
                          [](const Message& m) { return m.subject == "fw.up.a.acknowledged"; });

@@ -8,7 +8,7 @@ namespace raw_sender_test {
 
 constexpr std::size_t kFile_bytes = 10 * 128 * 1024 - 5;
 
-/// "Exports" noise that no compression makes smaller.
+/// "Exports" noise that does not compress.
 class FakeExporter : public RawExporter {
  public:
   explicit FakeExporter(int& times, std::string problem = "")
@@ -61,7 +61,7 @@ class Raw : public test::UplinkTest {
   int exports_ = 0;
 };
 
-TEST_F(Raw, ArrivesWholeAndNoFasterThanAllowed) {
+TEST_F(Raw, ArrivesWholeAtTheAllowedRate) {
   settings_.raw_kbit_s = 1000;
   begin_raw();
   ask("r1");
@@ -74,7 +74,7 @@ TEST_F(Raw, ArrivesWholeAndNoFasterThanAllowed) {
   EXPECT_EQ(kept_twice(), 0U);
 }
 
-TEST_F(Raw, GoesOnAfterARestart) {
+TEST_F(Raw, ContinuesAfterARestart) {
   settings_.raw_kbit_s = 1000;
   begin_raw();
   ask("r1");
@@ -86,11 +86,11 @@ TEST_F(Raw, GoesOnAfterARestart) {
   run(20);
   EXPECT_EQ(exports_, 1);
   EXPECT_EQ(hub_.count("a/raw/r1/"), 10U);
-  EXPECT_LE(kept_twice(), 1U);  // the one whose answer nobody read
+  EXPECT_LE(kept_twice(), 1U);  // the one whose answer was not read
   EXPECT_EQ(received("r1").size(), kFile_bytes);
 }
 
-TEST_F(Raw, AFullHubKeepsThePiecesInTheBuilding) {
+TEST_F(Raw, PiecesStayInTheBuildingWhileTheHubIsFull) {
   begin_raw();
   hub_.error = R"({"error":{"code":400,"description":"maximum bytes exceeded"}})";
   ask("r1");
@@ -101,7 +101,7 @@ TEST_F(Raw, AFullHubKeepsThePiecesInTheBuilding) {
   EXPECT_EQ(hub_.count("a/raw/r1/"), 10U);
 }
 
-TEST_F(Raw, OfWhatIsTooMuchOrCannotBeMadeItSaysWhy) {
+TEST_F(Raw, ReportsWhyAPieceCannotBeSent) {
   begin_raw();
   ask("r1", R"(,"bytes":1000)");
   run(5);

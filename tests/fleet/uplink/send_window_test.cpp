@@ -19,7 +19,7 @@ Outgoing numbered(int number, std::size_t size = 10) {
   return out;
 }
 
-TEST(SendWindow, WhatIsNotAcknowledgedGoesOutAgainAfterTwoSeconds) {
+TEST(SendWindow, ResendsAfterTwoSecondsWithoutAcknowledgement) {
   SendWindow w;
   w.add(numbered(1), 0);
   EXPECT_EQ(w.due(0), (std::vector<std::int64_t>{1}));
@@ -31,7 +31,7 @@ TEST(SendWindow, WhatIsNotAcknowledgedGoesOutAgainAfterTwoSeconds) {
   EXPECT_EQ(w.sent_again(), 1);
 }
 
-TEST(SendWindow, WhileNothingIsAcknowledgedOnlyTheOldestGoesOutOnceASecond) {
+TEST(SendWindow, SendsOnlyTheOldestOnceASecondWithoutAcknowledgements) {
   SendWindow w;
   for (int i = 1; i <= 100; ++i) w.add(numbered(i), 0);
   EXPECT_EQ(w.due(0).size(), 100U);
@@ -49,7 +49,7 @@ TEST(SendWindow, WhileNothingIsAcknowledgedOnlyTheOldestGoesOutOnceASecond) {
   EXPECT_EQ(w.due(62 * kSecond_us).size(), 99U);
 }
 
-TEST(SendWindow, AnEarthquakeAfterHoursWithoutANewsGoesOutAtOnce) {
+TEST(SendWindow, SendsAnEarthquakeAtOnceAfterQuietHours) {
   SendWindow w;
   w.add(numbered(1), 0);
   (void)w.due(0);
@@ -71,7 +71,7 @@ TEST(SendWindow, IsBoundedInMessagesAndBytes) {
   EXPECT_LE(heavy.messages(), 5U);
 }
 
-TEST(SendWindow, AMessageThatAloneIsNotAcknowledgedGoesOutMoreAndMoreSeldom) {
+TEST(SendWindow, ResendsASingleUnacknowledgedMessageLessAndLessOften) {
   SendWindow w;
   w.add(numbered(1), 0);
   (void)w.due(0);
@@ -86,7 +86,7 @@ TEST(SendWindow, AMessageThatAloneIsNotAcknowledgedGoesOutMoreAndMoreSeldom) {
   EXPECT_LE(sent, 20U);
 }
 
-TEST(SendWindow, ARefusedMessageWaitsAndHoldsUpNobody) {
+TEST(SendWindow, ARefusedMessageWaitsWithoutDelayingOthers) {
   SendWindow w;
   w.add(numbered(1), 0);
   w.add(numbered(2), 0);
@@ -99,7 +99,7 @@ TEST(SendWindow, ARefusedMessageWaitsAndHoldsUpNobody) {
 }
 
 // A full stream of raw samples must not hold up an event.
-TEST(SendWindow, WhileNothingButARefusedMessageWaitsOthersAreTaken) {
+TEST(SendWindow, TakesMessagesWhileOnlyARefusedOneWaits) {
   SendWindow w;
   w.add(numbered(1), 0);
   (void)w.due(0);
@@ -108,7 +108,7 @@ TEST(SendWindow, WhileNothingButARefusedMessageWaitsOthersAreTaken) {
   w.add(numbered(2), 30 * kSecond_us);
   EXPECT_EQ(w.due(30 * kSecond_us), (std::vector<std::int64_t>{2}));
   EXPECT_TRUE(w.takes(31 * kSecond_us));
-  EXPECT_FALSE(w.takes(32 * kSecond_us));  // that one is not answered
+  EXPECT_FALSE(w.takes(32 * kSecond_us));  // that one has no answer
   ASSERT_TRUE(w.acknowledged(2, 32 * kSecond_us));
   EXPECT_TRUE(w.takes(59 * kSecond_us));
   EXPECT_EQ(w.due(61 * kSecond_us), (std::vector<std::int64_t>{1}));
@@ -118,7 +118,7 @@ TEST(SendWindow, WhileNothingButARefusedMessageWaitsOthersAreTaken) {
   EXPECT_FALSE(w.takes(110 * kSecond_us));
 }
 
-TEST(SendWindow, AnAnswerThatComesTwiceOrLateSettlesOnce) {
+TEST(SendWindow, SettlesRepeatedAndLateAnswersOnce) {
   SendWindow w;
   w.add(numbered(1), 0);
   EXPECT_TRUE(w.has("a/event/1"));
@@ -130,7 +130,7 @@ TEST(SendWindow, AnAnswerThatComesTwiceOrLateSettlesOnce) {
   EXPECT_EQ(w.bytes(), 0U);
 }
 
-TEST(SendWindow, ANewConnectionGetsEverythingThatTheOldOneHad) {
+TEST(SendWindow, ResendsEverythingOnANewConnection) {
   SendWindow w;
   for (int i = 1; i <= 3; ++i) w.add(numbered(i), 0);
   (void)w.due(0);
@@ -148,15 +148,15 @@ Verdict verdict(const std::string& text) {
   return verdict_of(answer);
 }
 
-TEST(VerdictTest, AStreamThatHasTheMessageSaysItsNumber) {
+TEST(VerdictTest, AcceptsTheNumberOfAStoredMessage) {
   EXPECT_EQ(verdict(R"({"stream":"FW_EVENT","seq":7})").code, 0);
   EXPECT_FALSE(verdict(R"({"stream":"FW_EVENT","seq":7})").duplicate);
   EXPECT_TRUE(verdict(R"({"stream":"FW_EVENT","seq":7,"duplicate":true})").duplicate);
   EXPECT_FALSE(verdict(R"({"stream":"FW_EVENT","seq":7,"duplicate":"yes"})").duplicate);
 }
 
-// The same 503, by nats-server 2.9.10.
-TEST(VerdictTest, AFullStreamIsNoHubThatIsAway) {
+// The same 503 from nats-server 2.9.10.
+TEST(VerdictTest, TellsAFullStreamFromAnAbsentHub) {
   const Verdict full =
       verdict(R"({"error":{"code":503,"err_code":10077,"description":"maximum bytes exceeded"}})");
   EXPECT_NE(full.code, 0);
@@ -166,7 +166,7 @@ TEST(VerdictTest, AFullStreamIsNoHubThatIsAway) {
             Verdict::kUnavailable);
 }
 
-TEST(VerdictTest, WhatIsNoAnswerAcknowledgesNothing) {
+TEST(VerdictTest, AMalformedAnswerAcknowledgesNothing) {
   for (const char* bad : {"", "[]", "{}", "7", R"({"error":{}})", R"({"error":7})",
                           R"({"error":{"code":0}})", R"({"error":{"code":99999999999}})"})
     EXPECT_EQ(verdict(bad).code, Verdict::kUnavailable) << bad;

@@ -26,15 +26,15 @@ inline constexpr std::int64_t kSecond = 1'000'000;
 inline constexpr std::int64_t kHour_us = 3600 * kSecond;
 inline constexpr std::int64_t kStart_us = 472'223 * kHour_us;  ///< of the history, a whole hour
 
-/// A hub that keeps what was published by key, as streams do, and acknowledges it.
+/// A hub that keeps published messages by key, like a stream, and acknowledges them.
 class FakeHub : public Link {
  public:
-  bool up = true;                     ///< a connection stands
-  bool answers = true;                ///< otherwise it takes nothing: a dead line, no quorum
-  std::string error;                  ///< of every answer, instead of an acknowledgement
-  std::map<std::string, int> stored;  ///< by key: how often
-  std::vector<Message> published;     ///< everything, in its order
-  std::vector<Message> answered;      ///< what went to a reply subject of somebody else
+  bool up = true;                     ///< connected
+  bool answers = true;                ///< false: it accepts nothing (a dead line, no quorum)
+  std::string error;                  ///< sent as every answer, instead of an acknowledgement
+  std::map<std::string, int> stored;  ///< by key: number of publications
+  std::vector<Message> published;     ///< all messages in order
+  std::vector<Message> answered;      ///< messages to reply subjects of others
   std::vector<std::string> subjects;
 
   [[nodiscard]] bool publish(const Message& message) override {
@@ -79,7 +79,7 @@ class FakeHub : public Link {
   std::int64_t connections_ = 1;
 };
 
-/// A history as `framewatch run` leaves it, and an uplink at it. Time passes by run().
+/// A history as `framewatch run` leaves it, with an uplink. run() lets time pass.
 class UplinkTest : public ::testing::Test {
  protected:
   UplinkTest() {
@@ -100,7 +100,7 @@ class UplinkTest : public ::testing::Test {
     sql(fmt::format("INSERT INTO event VALUES ('gap', {}, {}, {}, {}, {}, '', 1, 0.1, '', 'm', '')",
                     id, time_us, state, time_us, severity));
   }
-  /// Every period of an hour, closed when `open` is 0.
+  /// Adds every period of an hour; closed if `open` is 0.
   void add_hour(std::int64_t start_us, int open = 0) {
     sql("BEGIN");
     for (const std::int64_t period_s : {60, 600, 3600})

@@ -11,7 +11,7 @@ namespace framewatch::fleet {
 namespace uplink_test {
 
 constexpr int kEvents = 30;
-constexpr std::size_t kPeriodsOfAnHour = 7;  // ten minutes and the hour; minutes are not asked for
+constexpr std::size_t kPeriodsOfAnHour = 7;  // ten minutes and the hour; minutes are not sent
 
 class UplinkRules : public test::UplinkTest {};
 
@@ -24,7 +24,7 @@ event_t live_event(int id, std::int64_t time_us) {
   return e;
 }
 
-TEST_F(UplinkRules, WhatTheHistoryHoldsArrivesOnce) {
+TEST_F(UplinkRules, SendsEveryMessageOfTheHistoryOnce) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   add_hour(test::kStart_us);
   begin();
@@ -36,7 +36,7 @@ TEST_F(UplinkRules, WhatTheHistoryHoldsArrivesOnce) {
   EXPECT_EQ(uplink_->status(now()).summaries_waiting, 0);
 }
 
-TEST_F(UplinkRules, ASummaryHasWhatTheHistoryHas) {
+TEST_F(UplinkRules, SendsASummaryAsTheHistoryHoldsIt) {
   add_hour(test::kStart_us);
   begin();
   run(5);
@@ -62,18 +62,18 @@ TEST_F(UplinkRules, ASummaryHasWhatTheHistoryHas) {
   ADD_FAILURE() << "no such summary";
 }
 
-TEST_F(UplinkRules, AnEventIsSentWhenItIsHeardAndOnceThough) {
+TEST_F(UplinkRules, SendsAnEventAtOnceAndOnlyOnce) {
   begin();
   run(2);
   uplink_->heard("EVENT", drivers::encoded(live_event(1, test::kStart_us)));
   uplink_->step(now());
   ASSERT_EQ(hub_.count("a/event/gap/1/"), 1U);
-  add_event(1, test::kStart_us);  // a second later it stands in the history
+  add_event(1, test::kStart_us);  // it is in the history a second later
   run(10);
   EXPECT_EQ(kept_twice(), 0U);
 }
 
-TEST_F(UplinkRules, APeriodThatRunsIsNotSentAndOneThatIsOverIs) {
+TEST_F(UplinkRules, SendsAPeriodOnlyWhenItIsOver) {
   add_hour(test::kStart_us, 1);
   sql("DELETE FROM period WHERE start_us >= " +
       std::to_string(test::kStart_us + 1800 * test::kSecond));
@@ -82,11 +82,11 @@ TEST_F(UplinkRules, APeriodThatRunsIsNotSentAndOneThatIsOverIs) {
       " ON CONFLICT DO NOTHING");
   begin();
   run(10);
-  EXPECT_EQ(hub_.count("a/summary/600/"), 2U);  // of the third nobody knows yet that it is over
+  EXPECT_EQ(hub_.count("a/summary/600/"), 2U);  // nothing has closed the third yet
   EXPECT_EQ(hub_.count("a/summary/3600/"), 0U);
 }
 
-TEST_F(UplinkRules, APeriodThatGrewIsSentAgainWhenItIsClosed) {
+TEST_F(UplinkRules, ResendsAPeriodThatGrew) {
   add_hour(test::kStart_us, 1);
   begin();
   run(10);
@@ -102,8 +102,8 @@ TEST_F(UplinkRules, APeriodThatGrewIsSentAgainWhenItIsClosed) {
   EXPECT_EQ(hub_.stored[key], 2);
 }
 
-// Within minutes a stream takes one Nats-Msg-Id once.
-TEST_F(UplinkRules, APeriodThatGrewIsNoRepetitionToTheHub) {
+// A stream accepts one Nats-Msg-Id only once within minutes.
+TEST_F(UplinkRules, TheHubAcceptsAPeriodThatGrew) {
   secret_ = "mine";
   add_hour(test::kStart_us, 1);
   begin();
@@ -116,7 +116,7 @@ TEST_F(UplinkRules, APeriodThatGrewIsNoRepetitionToTheHub) {
   EXPECT_EQ(kept_twice(), 0U);
 }
 
-TEST_F(UplinkRules, AHubThatIsAwayForHoursCostsNothingButTime) {
+TEST_F(UplinkRules, AnAbsentHubCostsOnlyTime) {
   begin();
   run(2);
   hub_.up = false;
@@ -136,7 +136,7 @@ TEST_F(UplinkRules, AHubThatIsAwayForHoursCostsNothingButTime) {
   EXPECT_EQ(hub_.count("a/summary/"), kPeriodsOfAnHour);
 }
 
-TEST_F(UplinkRules, AHubThatTakesNothingIsAskedOnceASecond) {
+TEST_F(UplinkRules, TriesAHubThatRefusesOnceASecond) {
   for (int i = 0; i < 400; ++i) add_event(i, test::kStart_us + i);
   begin();
   hub_.answers = false;
@@ -150,22 +150,22 @@ TEST_F(UplinkRules, AHubThatTakesNothingIsAskedOnceASecond) {
   EXPECT_EQ(hub_.count("a/event/gap/"), 400U);
 }
 
-TEST_F(UplinkRules, AfterAPowerCutOfTheHubNothingIsMissing) {
+TEST_F(UplinkRules, LosesNothingInAPowerCutOfTheHub) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   add_hour(test::kStart_us);
   begin();
   run(30);
   ASSERT_EQ(hub_.count("a/event/gap/"), std::size_t{kEvents});
-  hub_.stored.clear();  // it had acknowledged them, and not yet given them to its disk
+  hub_.stored.clear();  // acknowledged, but not yet on its disk
   hub_.up = false;
-  run(7200, 1'000'000);  // two hours without: how long does not matter
+  run(7200, 1'000'000);  // two hours without; the duration does not matter
   hub_.reconnect();
   run(30);
   EXPECT_EQ(hub_.count("a/event/gap/"), std::size_t{kEvents});
   EXPECT_EQ(hub_.count("a/summary/"), kPeriodsOfAnHour);
 }
 
-TEST_F(UplinkRules, ASecondBreakBeforeWhatWasLostIsSentAgainForgetsNothing) {
+TEST_F(UplinkRules, LosesNothingInASecondOutageDuringResending) {
   for (int id = 0; id < 3; ++id) add_event(id, test::kStart_us + id);
   begin();
   run(2);
@@ -183,14 +183,14 @@ TEST_F(UplinkRules, ASecondBreakBeforeWhatWasLostIsSentAgainForgetsNothing) {
   EXPECT_EQ(hub_.count("a/event/"), 3U);
 }
 
-TEST_F(UplinkRules, ALineThatBreaksAgainAndAgainSendsNothingForEver) {
+TEST_F(UplinkRules, AnUnstableLineDoesNotResendForever) {
   add_event(1, test::kStart_us);
   begin();
   run(2);
   EXPECT_EQ(hub_.stored["a/event/gap/1/" + std::to_string(test::kStart_us) + "/1"], 1);
   std::size_t sent = 0;
   for (int i = 0; i < 6; ++i) {
-    for (int more = 0; more < 4; ++more) {  // something is acknowledged all the time
+    for (int more = 0; more < 4; ++more) {  // acknowledgements come all the time
       add_event(100 + 4 * i + more, test::kStart_us + 100 + 4 * i + more);
       run(90, 500'000);
     }
@@ -201,10 +201,10 @@ TEST_F(UplinkRules, ALineThatBreaksAgainAndAgainSendsNothingForEver) {
       return m.header(header::kKey).find("/gap/1/") != std::string::npos;
     }));
   }
-  EXPECT_EQ(sent, 2u);  // after the first break, 6 min later, and not after those that followed
+  EXPECT_EQ(sent, 2u);  // 6 min after the first interruption, not after later ones
 }
 
-TEST_F(UplinkRules, WhatWasAcknowledgedLongBeforeIsNotSentAgain) {
+TEST_F(UplinkRules, DoesNotResendOldAcknowledgedMessages) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   begin();
   run(10);
@@ -213,20 +213,20 @@ TEST_F(UplinkRules, WhatWasAcknowledgedLongBeforeIsNotSentAgain) {
   run(10);
   hub_.reconnect();
   run(30);
-  EXPECT_EQ(kept_twice(), 1U);  // the newest alone
+  EXPECT_EQ(kept_twice(), 1U);  // only the newest
 }
 
-TEST_F(UplinkRules, AnUplinkThatIsKilledSendsTheRest) {
+TEST_F(UplinkRules, SendsTheRestAfterBeingKilled) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   begin();
-  uplink_->step(now());  // sent, and no answer read
+  uplink_->step(now());  // sent, answer not read
   uplink_.reset();
   begin();
   run(20);
   EXPECT_EQ(hub_.count("a/event/gap/"), std::size_t{kEvents});
 }
 
-TEST_F(UplinkRules, AClockThatJumpsLosesNothing) {
+TEST_F(UplinkRules, LosesNothingWhenTheClockJumps) {
   begin();
   run(2);
   add_event(1, test::kStart_us);
@@ -239,7 +239,7 @@ TEST_F(UplinkRules, AClockThatJumpsLosesNothing) {
   run(2);
   EXPECT_EQ(hub_.count("a/event/gap/"), 3U);
   uplink_.reset();
-  begin();  // its host's clock is behind every acknowledgement
+  begin();  // the clock is behind every acknowledgement
   run(2);
   add_event(4, test::kStart_us);
   run(2);
@@ -249,7 +249,7 @@ TEST_F(UplinkRules, AClockThatJumpsLosesNothing) {
   EXPECT_EQ(hub_.count("a/event/gap/4/"), 1U);
 }
 
-TEST_F(UplinkRules, OlderSummariesGoAtFourASecondAndEventsPassThem) {
+TEST_F(UplinkRules, SendsFourOldSummariesASecondAfterEvents) {
   for (int h = 0; h < 24; ++h) add_hour(test::kStart_us + h * test::kHour_us);
   begin();
   run(5);
@@ -262,7 +262,7 @@ TEST_F(UplinkRules, OlderSummariesGoAtFourASecondAndEventsPassThem) {
   EXPECT_EQ(hub_.count("a/summary/"), 24 * kPeriodsOfAnHour);
 }
 
-TEST_F(UplinkRules, AroundAnEventMinutesAreSent) {
+TEST_F(UplinkRules, SendsMinutesAroundAnEvent) {
   add_hour(test::kStart_us);
   add_hour(test::kStart_us + test::kHour_us);
   add_event(1, test::kStart_us + 1800 * test::kSecond, 1);
@@ -271,10 +271,10 @@ TEST_F(UplinkRules, AroundAnEventMinutesAreSent) {
   EXPECT_EQ(hub_.count("a/summary/60/"), 70U);  // 10 before it, 60 after
 }
 
-TEST_F(UplinkRules, AFullHubRefusesAndTheBuildingKeeps) {
+TEST_F(UplinkRules, KeepsMessagesThatAFullHubRefuses) {
   add_event(1, test::kStart_us);
   begin();
-  // As JetStream says it.
+  // JetStream's message.
   hub_.error = R"({"error":{"code":503,"err_code":10077,"description":"maximum bytes exceeded"}})";
   run(10);
   EXPECT_EQ(hub_.count("a/event/"), 0U);
@@ -284,7 +284,7 @@ TEST_F(UplinkRules, AFullHubRefusesAndTheBuildingKeeps) {
   EXPECT_EQ(hub_.count("a/event/"), 1U);
 }
 
-TEST_F(UplinkRules, AHistoryThatIsSetAsideAndBegunAnewIsReadOn) {
+TEST_F(UplinkRules, ContinuesWithANewHistory) {
   add_event(1, test::kStart_us);
   begin();
   run(3);
@@ -301,7 +301,7 @@ TEST_F(UplinkRules, AHistoryThatIsSetAsideAndBegunAnewIsReadOn) {
   EXPECT_EQ(uplink_->status(now()).store_trouble, "");
 }
 
-TEST_F(UplinkRules, ADamagedOutboxIsSetAsideAndEverythingIsSentAgain) {
+TEST_F(UplinkRules, SetsADamagedOutboxAsideAndResendsEverything) {
   add_event(1, test::kStart_us);
   framewatch::test::write_file(folder_.path("uplink.sqlite"), std::string(8192, 'x'));
   begin();
@@ -310,14 +310,14 @@ TEST_F(UplinkRules, ADamagedOutboxIsSetAsideAndEverythingIsSentAgain) {
   EXPECT_EQ(uplink_->status(now()).store_trouble, "");
 }
 
-TEST_F(UplinkRules, AnOutboxThatCannotBeWrittenIsSaidAndFloodsNobody) {
+TEST_F(UplinkRules, ReportsAnUnwritableOutboxWithoutFlooding) {
   for (int i = 0; i < kEvents; ++i) add_event(i, test::kStart_us + i);
   std::filesystem::create_directory(folder_.path("uplink.sqlite"));
   begin();
   uplink_->heard("EVENT", drivers::encoded(live_event(900, test::kStart_us)));
   run(20);
   EXPECT_NE(uplink_->status(now()).store_trouble, "");
-  EXPECT_EQ(hub_.count("a/event/gap/900/"), 1U);  // what is heard goes out all the same
+  EXPECT_EQ(hub_.count("a/event/gap/900/"), 1U);  // live events are sent anyway
   EXPECT_LE(hub_.published.size(), 3U);
   std::filesystem::remove(folder_.path("uplink.sqlite"));
   run(5);

@@ -11,24 +11,24 @@ namespace comparison_test {
 
 // Limits.
 constexpr int kTables = 300, kStiffnesses = 100, kPeriods = 10;
-constexpr int kMaxFalse = 30;           // tables of 300 with a loss that is none; 15 are meant
+constexpr int kMaxFalse = 30;           // tables of 300 with a false loss; 15 are expected
 constexpr double kTenThousand = 4.417;  // standard errors: 0.05 / 10000, one-sided
 
 Level level(const std::vector<float>& medians, float error) {
   return level_of(medians, std::vector<float>(medians.size(), error));
 }
 
-TEST(Comparison, ALevelIsTheMedianAndItsError) {
+TEST(Comparison, LevelIsTheMedianWithItsError) {
   const Level l = level({10, 12, 11, 100}, 1);
   EXPECT_DOUBLE_EQ(l.value, 11.5);
   EXPECT_EQ(l.periods, 4);
-  // The windows' own error, where the periods scatter less than it.
+  // The windows' error, if the periods scatter less.
   EXPECT_NEAR(level({10, 10, 10, 10}, 2).std_error, 1.2533 * 2 / 2, 1e-3);
-  // The scatter, where it is larger than they say: MAD of 8, 9, 11, 12 about 10 is 1.5.
+  // The scatter, if it is larger: MAD of 8, 9, 11, 12 about 10 is 1.5.
   EXPECT_NEAR(level({8, 9, 11, 12}, 0.1F).std_error, 1.2533 * 1.4826 * 1.5 / 2, 1e-3);
 }
 
-TEST(Comparison, NothingIsMadeUpOfNothing) {
+TEST(Comparison, ComparesNothingWithoutValues) {
   Comparison c;
   c.after = level({10}, 1);
   compare(c);
@@ -38,7 +38,7 @@ TEST(Comparison, NothingIsMadeUpOfNothing) {
   EXPECT_FALSE(c.compared);
 }
 
-TEST(Comparison, ALossIsARatioWithItsError) {
+TEST(Comparison, LossIsARatioWithItsError) {
   Comparison c;
   c.before = {100, 1, 10};
   c.after = {85, 2, 10};
@@ -49,13 +49,13 @@ TEST(Comparison, ALossIsARatioWithItsError) {
   EXPECT_LT(c.times_error(), -6);
 }
 
-TEST(Comparison, MoreComparisonsNeedMoreErrors) {
+TEST(Comparison, MoreComparisonsRaiseTheThreshold) {
   EXPECT_NEAR(significant_errors(10'000), kTenThousand, 2e-3);
   EXPECT_GT(significant_errors(120'000), significant_errors(120));
   EXPECT_NEAR(significant_errors(0), significant_errors(1), 1e-12);
 }
 
-TEST(Comparison, ChanceAloneSeldomMakesALoss) {
+TEST(Comparison, ChanceSeldomLooksLikeALoss) {
   std::mt19937 random(7);
   std::normal_distribution<float> value(100, 3);
   const auto periods = [&] {

@@ -30,13 +30,13 @@ BuildingState heard(std::int64_t heard_us, std::vector<event_t> raised = {}) {
   return state;
 }
 
-TEST(BuildingState, IsWellWhenNothingIsRaised) {
+TEST(BuildingState, IsWellWithoutRaisedEvents) {
   const Judged j = judged(heard(kAlive_us), kNow_us);
   EXPECT_EQ(j.urgency, Urgency::well);
   EXPECT_EQ(j.message, "");
 }
 
-TEST(BuildingState, TheMostUrgentSpeaks) {
+TEST(BuildingState, ShowsTheMostUrgentEvent) {
   BuildingState state = heard(kAlive_us, {event(1, 0), event(2, 2), event(3, 1)});
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::alarm);
   EXPECT_EQ(judged(state, kNow_us).message, "event 2");
@@ -49,14 +49,14 @@ TEST(BuildingState, TheMostUrgentSpeaks) {
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::known);
 }
 
-TEST(BuildingState, SilenceIsLessThanAnAlarmAndMoreThanAChange) {
+TEST(BuildingState, RanksSilenceBetweenAlarmAndChange) {
   EXPECT_EQ(judged(heard(kLongAgo_us, {event(1, 2)}), kNow_us).urgency, Urgency::alarm);
   EXPECT_EQ(judged(heard(kLongAgo_us, {event(1, 0)}), kNow_us).urgency, Urgency::silent);
   EXPECT_EQ(judged(heard(kLongAgo_us), kNow_us).since_us, kLongAgo_us);
   EXPECT_FALSE(heard(kNow_us - BuildingState::kSilent_us).is_silent(kNow_us));
 }
 
-TEST(BuildingState, WhatWasNeverHeardIsSilentAfterAWhile) {
+TEST(BuildingState, IsSilentWithoutAHeartbeatForLong) {
   BuildingState state;
   state.first_us = kAlive_us;
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::well);
@@ -64,7 +64,7 @@ TEST(BuildingState, WhatWasNeverHeardIsSilentAfterAWhile) {
   EXPECT_EQ(judged(state, kNow_us).message, "no heartbeat has come yet");
 }
 
-TEST(BuildingState, EventsComeChangeAndGo) {
+TEST(BuildingState, FollowsRaisedChangedAndClearedEvents) {
   std::vector<event_t> raised;
   note_event(raised, event(1, 1));
   note_event(raised, event(2, 2));

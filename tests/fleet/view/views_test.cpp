@@ -116,7 +116,7 @@ const json& of(const json& list, const std::string& name) {
   return none;
 }
 
-TEST_F(Views, TheOverviewIsHeartbeatsAndWhatCameAfterThem) {
+TEST_F(Views, OverviewCombinesHeartbeatsAndLaterEvents) {
   event_t over = event(5, "gap", 1);
   over.state = 0;
   FleetBatch heartbeats, events;
@@ -163,7 +163,7 @@ TEST_F(Views, TheOverviewIsHeartbeatsAndWhatCameAfterThem) {
   EXPECT_EQ(json::parse(building_json(look_, "nobody"))["problem"], "no such building");
 }
 
-TEST_F(Views, RawSamplesAreWholeOrItIsSaidWhyNot) {
+TEST_F(Views, RawSamplesAreCompleteOrSayWhyNot) {
   FleetBatch batch;
   batch.newest = {heartbeat("tower")};
   batch.pieces = {{"tower", "whole", "whole.mseed", 1, 2, {0xff, 4}},
@@ -187,7 +187,7 @@ TEST_F(Views, RawSamplesAreWholeOrItIsSaidWhyNot) {
   for (const json& one : all) EXPECT_EQ(one["problem"], one["request"] == "none" ? "no" : "");
 }
 
-TEST_F(Views, AParameterOverTime) {
+TEST_F(Views, ShowAParameterOverTime) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   FleetBatch batch;
   watch_t watch{};

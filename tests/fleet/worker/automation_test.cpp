@@ -36,7 +36,7 @@ json content(const Message& message) {
   return json::parse(message.bytes.begin(), message.bytes.end(), nullptr, false);
 }
 
-TEST(Automation, AHeartbeatIsTheStateOfABuilding) {
+TEST(Automation, PublishesABuildingsStateFromItsHeartbeat) {
   FleetBatch batch;
   batch.newest = {heartbeat({{1, 2}}), heartbeat({{3, 1}, {4, 2}, {5, 0}})};
   const auto messages = automation_messages(batch);
@@ -51,13 +51,13 @@ TEST(Automation, AHeartbeatIsTheStateOfABuilding) {
   EXPECT_EQ(state["raised"][0]["message"], "it \"moves\"");
 }
 
-TEST(Automation, NothingRaisedIsSaidToo) {
+TEST(Automation, PublishesThatNothingIsRaised) {
   FleetBatch batch;
   batch.newest = {heartbeat({})};
   EXPECT_EQ(content(automation_messages(batch).at(0))["severity"], "none");
 }
 
-TEST(Automation, AnEventIsWhatAWebhookGets) {
+TEST(Automation, PublishesAnEventAsForAWebhook) {
   FleetBatch batch;
   batch.events = {{"kobe", event(7)}};
   const auto messages = automation_messages(batch);
@@ -66,13 +66,13 @@ TEST(Automation, AnEventIsWhatAWebhookGets) {
   EXPECT_EQ(content(messages[0])["schema"], "framewatch.event/1");
 }
 
-TEST(Automation, WhatCannotBeReadIsNotTold) {
+TEST(Automation, IgnoresUnreadableMessages) {
   FleetBatch batch;
   batch.newest = {{"kobe", "service", "service_t", {1, 2, 3}}, {"kobe", "config", "toml", {'a'}}};
   EXPECT_TRUE(automation_messages(batch).empty());
 }
 
-TEST(Automation, ManyFindingsAreCounted) {
+TEST(Automation, CountsManyFindings) {
   std::vector<std::pair<std::int64_t, std::int32_t>> many;
   for (int i = 0; i < 1000; ++i) many.emplace_back(i, 1);
   FleetBatch batch;

@@ -31,7 +31,7 @@ std::string reason(const Message& message) {
   return batch.others.empty() ? "taken" : batch.others[0].reason;
 }
 
-TEST(Judge, TakesWhatABuildingSays) {
+TEST(Judge, AcceptsABuildingsMessages) {
   EXPECT_EQ(judged(event_message("kobe", 1)).events.at(0).building, "kobe");
   EXPECT_EQ(judged(event_message("kobe", 7)).events.at(0).event.id, 7);
   EXPECT_EQ(judged(summary_message("kobe", 600, kHub_us)).summaries.at(0).summary.period_s, 600);
@@ -44,7 +44,7 @@ TEST(Judge, TakesWhatABuildingSays) {
   EXPECT_EQ(table.newest.at(0).type, "parameter_table_t");
 }
 
-TEST(Judge, TakesAPieceOfRawSamples) {
+TEST(Judge, AcceptsAPieceOfRawSamples) {
   Message piece =
       packed(up_subject("kobe", "raw.r-17"), raw_key("kobe", "r-17", 2), "mseed", {1, 2, 3}, "");
   piece.headers[header::kPiece] = "2";
@@ -69,7 +69,7 @@ TEST(Judge, TakesAPieceOfRawSamples) {
   }
 }
 
-TEST(Judge, TakesSealedKeys) {
+TEST(Judge, AcceptsSealedKeys) {
   Message message = event_message("kobe", 1);
   message.headers[header::kKey] =
       sealed_key(message.header(header::kKey), "secret of kobe", message.bytes);
@@ -78,7 +78,7 @@ TEST(Judge, TakesSealedKeys) {
   EXPECT_EQ(reason(message), "its key names kobe, its subject osaka");
 }
 
-TEST(Judge, RefusesWhatNamesAnother) {
+TEST(Judge, RefusesAMessageThatNamesAnotherBuilding) {
   Message forged = event_message("kobe", 1);
   forged.subject = up_subject("osaka", "event");
   EXPECT_EQ(reason(forged), "its key names kobe, its subject osaka");
@@ -90,7 +90,7 @@ TEST(Judge, RefusesWhatNamesAnother) {
   EXPECT_NE(reason(other_period).find("its subject says summary.3600"), std::string::npos);
 }
 
-TEST(Judge, RefusesWhatIsNoMessage) {
+TEST(Judge, RefusesMalformedMessages) {
   Message message = event_message("kobe", 1);
   message.headers.erase(header::kKey);
   EXPECT_EQ(reason(message), "its key (Nats-Msg-Id) is missing");
@@ -109,7 +109,7 @@ TEST(Judge, RefusesWhatIsNoMessage) {
   EXPECT_FALSE(reason(message).empty());
 }
 
-TEST(Judge, KeepsWhatANewerProgramSaysForLater) {
+TEST(Judge, KeepsMessagesOfNewerProgramsForLater) {
   Message message = event_message("kobe", 1);
   message.headers.erase(header::kEncoding);
   message.bytes = drivers::encoded(event(1));
@@ -120,7 +120,7 @@ TEST(Judge, KeepsWhatANewerProgramSaysForLater) {
   EXPECT_EQ(reason(kind), "");
 }
 
-TEST(Judge, RefusesSummariesOfClocksThatAreFarOff) {
+TEST(Judge, RefusesSummariesOfAFarOffClock) {
   EXPECT_EQ(judged(summary_message("kobe", 600, kHub_us + daemon::kDay_us / 2)).summaries.size(),
             1u);
   EXPECT_NE(reason(summary_message("kobe", 600, kHub_us + 2 * daemon::kDay_us)).find("tomorrow"),

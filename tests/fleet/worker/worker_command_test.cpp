@@ -26,7 +26,7 @@ TEST(MissingDays, ReadsAnInventory) {
   EXPECT_EQ(days[1].counts.periods.at(600), 144);
 }
 
-TEST(MissingDays, WhatIsNoInventoryNamesNoDay) {
+TEST(MissingDays, AMalformedInventoryNamesNoDay) {
   for (const std::string& bad :
        {std::string(""), std::string("[]"), std::string("{}"),
         std::string(R"({"format":1,"days":[]})"), day(R"("from_us":"x","events":3,"periods":{}})"),
@@ -37,7 +37,7 @@ TEST(MissingDays, WhatIsNoInventoryNamesNoDay) {
     EXPECT_TRUE(inventory_days(bad).empty()) << bad;
 }
 
-TEST(MissingDaysOnServer, AreThoseOfWhichTheDatabaseHasLess) {
+TEST(MissingDaysOnServer, AreTheDaysThatTheDatabaseLacks) {
   const char* const where = std::getenv("FRAMEWATCH_POSTGRES");
   if (where == nullptr) GTEST_SKIP() << "no PostgreSQL (./test --fleet starts one)";
   Database look;
@@ -65,7 +65,7 @@ TEST(MissingDaysOnServer, AreThoseOfWhichTheDatabaseHasLess) {
   ASSERT_EQ(store.add(batch), "");
   const auto days = missing_days(store, "kobe");
   ASSERT_TRUE(days);
-  // Yesterday there is nothing, three days ago no summary; today is not over.
+  // Yesterday has nothing, three days ago no summary; today is not over.
   EXPECT_EQ(*days, (std::vector<std::int64_t>{today_us - day_us, today_us - 3 * day_us}));
   EXPECT_TRUE(missing_days(store, "osaka")->empty());
 }

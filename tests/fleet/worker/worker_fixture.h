@@ -69,8 +69,7 @@ inline Message parameters_message(const std::string& building) {
                 "parameter_table_t", drivers::encoded(t), t.config_sha256);
 }
 
-/// A hub with consumers: gives what it holds when it is asked, and again when it is not
-/// acknowledged.
+/// A hub with consumers: delivers its messages on request, and again if they are not acknowledged.
 class HubLink : public Link {
  public:
   void hold(Message message) {
@@ -80,7 +79,7 @@ class HubLink : public Link {
     message.reply = "$JS.ACK." + stream + ".store.1." + std::to_string(++number_);
     held_[message.reply] = std::move(message);
   }
-  /// What was given and not acknowledged is given again.
+  /// Delivers unacknowledged messages again.
   void time_is_over() { given_.clear(); }
   std::size_t held() const { return held_.size(); }
   void cut() { ++connections_; }
@@ -99,14 +98,14 @@ class HubLink : public Link {
       commands_.push_back(message);
     } else if (message.bytes.empty()) {
       held_.erase(message.subject);
-    } else {  // -NAK: to be given again
+    } else {  // -NAK: deliver again
       given_.erase(message.subject);
       ++given_back_;
     }
     return true;
   }
   void listen(const std::string& subject) override {
-    // A server gives a message to each subscription that it fits; a link has one for its inbox.
+    // A server delivers a message to each matching subscription; a link has one for its inbox.
     if (subject.starts_with(inbox())) ++subscriptions_;
   }
   std::vector<Message> take() override { return std::exchange(come_, {}); }

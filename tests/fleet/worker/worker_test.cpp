@@ -16,11 +16,11 @@ namespace worker_test {
 constexpr std::int64_t kStep_us = 100'000;
 constexpr std::int64_t kMessages = 200;  // more is a flood
 
-/// A database that fails when it is told to.
+/// A database that fails on request.
 struct Database {
   std::vector<FleetBatch> batches;
   std::string problem;
-  std::set<std::int64_t> bad_events;  ///< ids that it does not take
+  std::set<std::int64_t> bad_events;  ///< ids that it refuses
 
   StoreOutcome store(const FleetBatch& batch) {
     if (!problem.empty()) return {problem, false};
@@ -68,7 +68,7 @@ TEST_F(WorkerTest, StoresAndThenAcknowledges) {
   EXPECT_EQ(worker_.counters().batches, 1);
 }
 
-TEST_F(WorkerTest, WhileTheDatabaseIsAwayNothingIsAcknowledgedAndNothingLost) {
+TEST_F(WorkerTest, AcknowledgesAndLosesNothingWithoutTheDatabase) {
   database_.problem = "connection refused";
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(20'000'000);
@@ -77,7 +77,7 @@ TEST_F(WorkerTest, WhileTheDatabaseIsAwayNothingIsAcknowledgedAndNothingLost) {
   const int requests = hub_.requests();
   hub_.time_is_over();
   pass(600'000);
-  EXPECT_LE(hub_.requests(), requests + 4);  // it does not ask while it waits
+  EXPECT_LE(hub_.requests(), requests + 4);  // it requests nothing while it waits
   database_.problem.clear();
   hub_.time_is_over();
   pass(60'000'000);
@@ -86,7 +86,7 @@ TEST_F(WorkerTest, WhileTheDatabaseIsAwayNothingIsAcknowledgedAndNothingLost) {
   EXPECT_EQ(worker_.counters().trouble, "");
 }
 
-TEST_F(WorkerTest, OneMessageThatTheDatabaseDoesNotTakeStopsNoOther) {
+TEST_F(WorkerTest, OneRefusedMessageStopsNoOther) {
   database_.bad_events = {3};
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(2'000'000);
@@ -99,7 +99,7 @@ TEST_F(WorkerTest, OneMessageThatTheDatabaseDoesNotTakeStopsNoOther) {
   EXPECT_EQ(worker_.counters().refused, 1);
 }
 
-TEST_F(WorkerTest, RefusedMessagesAreAcknowledgedToo) {
+TEST_F(WorkerTest, AcknowledgesRefusedMessages) {
   Message forged = event_message("kobe", 1);
   forged.subject = "fw.up.osaka.event";
   hub_.hold(forged);
@@ -119,7 +119,7 @@ TEST_F(WorkerTest, AsksAgainAfterANewConnection) {
   EXPECT_EQ(hub_.requests(), requests + 4);
 }
 
-TEST_F(WorkerTest, WhatComesAgainBecauseTheDatabaseWasAwayIsNoFlood) {
+TEST_F(WorkerTest, RepeatsAfterADatabaseOutageAreNoFlood) {
   for (std::int64_t id = 0; id < kMessages / 2; ++id) hub_.hold(event_message("kobe", id));
   database_.problem = "connection refused";
   for (int i = 0; i < 5; ++i) {
@@ -132,7 +132,7 @@ TEST_F(WorkerTest, WhatComesAgainBecauseTheDatabaseWasAwayIsNoFlood) {
   EXPECT_EQ(worker_.counters().flooding, 0);
 }
 
-TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
+TEST_F(WorkerTest, AcknowledgesAndCountsAFlood) {
   const auto more = kMessages + 20;
   for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
   hub_.hold(event_message("osaka", 1));
@@ -148,7 +148,7 @@ TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
   EXPECT_EQ(floods, 20);
 }
 
-TEST_F(WorkerTest, AFloodBesideAMessageThatTheDatabaseDoesNotTakeIsNotStoredEither) {
+TEST_F(WorkerTest, StoresNoFloodAlongWithARefusedMessage) {
   database_.bad_events = {3};
   const auto more = kMessages + 20;
   for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
@@ -162,30 +162,30 @@ TEST_F(WorkerTest, AFloodBesideAMessageThatTheDatabaseDoesNotTakeIsNotStoredEith
   EXPECT_EQ(worker_.counters().flooding, 20);
 }
 
-TEST_F(WorkerTest, WhatTheDatabaseDidNotTakeIsGivenBackAndTakenWhenItIsThereAgain) {
+TEST_F(WorkerTest, ReturnsUnstoredMessagesAndStoresThemLater) {
   database_.problem = "connection refused";
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(1'000'000);
   EXPECT_EQ(hub_.given_back(), 10);
   database_.problem.clear();
-  pass(8'000'000);  // nobody's patience is over
+  pass(8'000'000);  // no timeout has passed
   EXPECT_EQ(database_.events().size(), 10u);
   EXPECT_EQ(hub_.held(), 0u);
 }
 
-TEST_F(WorkerTest, EveryMessageIsTakenOnce) {
+TEST_F(WorkerTest, StoresEveryMessageOnce) {
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(2'000'000);
   EXPECT_EQ(worker_.counters().stored, 10);
 }
 
-TEST_F(WorkerTest, AsksABuildingForDaysOfWhichTheDatabaseHasLessThanItsInventory) {
+TEST_F(WorkerTest, RequestsDaysThatTheDatabaseLacks) {
   const Message inventory = packed(up_subject("kobe", "inventory"),
                                    newest_key("kobe", "inventory", 1), "json", {'{', '}'}, "");
   missing_ = std::vector<std::int64_t>(7, kHub_us - 86'400'000'000);
   hub_.hold(inventory);
   pass(60'000'000);
-  EXPECT_TRUE(hub_.commands().empty());  // what is under way may still come
+  EXPECT_TRUE(hub_.commands().empty());  // requested messages may still come
   pass(1'800'000'000);
   ASSERT_EQ(hub_.commands().size(), Worker::kMaxResent_days);
   const Message& asked = hub_.commands().front();
@@ -198,7 +198,7 @@ TEST_F(WorkerTest, AsksABuildingForDaysOfWhichTheDatabaseHasLessThanItsInventory
   EXPECT_EQ(hub_.commands().size(), Worker::kMaxResent_days);  // once for an inventory
 }
 
-TEST_F(WorkerTest, AsksForNothingWhileTheDatabaseIsAwayOrHasEverything) {
+TEST_F(WorkerTest, RequestsNothingWithoutNeedOrDatabase) {
   for (const char* name : {"kobe", "osaka"}) {
     hub_.hold(packed(up_subject(name, "inventory"), newest_key(name, "inventory", 1), "json",
                      {'{', '}'}, ""));
@@ -208,7 +208,7 @@ TEST_F(WorkerTest, AsksForNothingWhileTheDatabaseIsAwayOrHasEverything) {
   }
 }
 
-TEST(FloodGateTest, EveryHourBeginsAnew) {
+TEST(FloodGateTest, ResetsEveryHour) {
   FloodGate gate(kMessages);
   for (std::int64_t i = 0; i < kMessages; ++i) EXPECT_TRUE(gate.takes("a", 1, kHub_us));
   EXPECT_FALSE(gate.takes("a", 7, kHub_us));

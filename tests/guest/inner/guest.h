@@ -14,13 +14,13 @@
 
 namespace framewatch::test {
 
-/// `configs/can/NAME.toml` with its (one) bus on another interface.
+/// Returns `configs/can/NAME.toml` with its only bus on another interface.
 daemon::Config example_on(const std::string& name, const std::string& interface);
 
-/// Runs a command of a shell that must succeed.
+/// Runs a shell command that must succeed.
 void shell(const std::string& command);
 
-/// A virtual bus of its own while it lives.
+/// A virtual bus that exists as long as this object.
 struct Vcan {
   explicit Vcan(std::string name_) : name(std::move(name_)) { up(); }
   ~Vcan() { down(); }
@@ -35,16 +35,16 @@ struct Vcan {
 inline constexpr const char* kTowerScenario =
     FRAMEWATCH_SOURCE_DIR "/configs/can/scenario_tower.toml";
 
-/// Estimates of a scenario's samples, quantized as its CAN nodes do, over LCM messages.
+/// Returns estimates of a scenario's samples over LCM, quantized as its CAN nodes do.
 std::vector<estimator::WindowEstimate> estimates_over_lcm(const std::string& scenario,
                                                           double seconds);
 
-/// Windows whose values, errors or reasons are not byte for byte the same; all when their numbers
+/// Counts windows whose values, errors or reasons differ in any byte; all windows if their numbers
 /// differ.
 std::size_t different(const std::vector<estimator::WindowEstimate>& a,
                       const std::vector<estimator::WindowEstimate>& b);
 
-/// A process; waited for at the end.
+/// A process; the destructor waits for its end.
 class Process {
  public:
   explicit Process(std::vector<std::string> arguments);
@@ -58,11 +58,11 @@ class Process {
   bool ended_ = false;
 };
 
-/// The buses of a configuration, live, in this process.
+/// Reads the buses of a configuration live in this process.
 class LiveBuses : private daemon::EstimationListener {
  public:
   explicit LiveBuses(const daemon::Config& config);
-  /// Handles frames until `done` is true, and half a second more.
+  /// Handles frames until `done` is true, and for half a second more.
   void run(const std::function<bool()>& done);
 
   void on_estimate(const estimator::WindowEstimate& e) override { estimates.push_back(e); }

@@ -17,9 +17,9 @@ void up(const std::string& name) {
   shell("ip link set " + name + " up type can bitrate 500000 restart-ms 100");
 }
 
-/// Two PCI cards on one bus: nodes send on can1, can0 listens, is taken out of the machine and put
-/// in again.
-TEST(Kvaser, ACardTakenOutAndPutInIsSurvivedAndCounted) {
+/// Two PCI cards on one bus: nodes send on can1 while can0 listens, is removed from the machine
+/// and inserted again.
+TEST(Kvaser, SurvivesAndCountsACardThatIsRemovedAndInserted) {
   if (std::getenv("CAN_GUEST_KVASER") == nullptr) GTEST_SKIP() << "only in run-in-vm";
   constexpr int kInstants = 1200, kOut = 400, kIn = 500;
   up("can0");
@@ -58,8 +58,7 @@ TEST(Kvaser, ACardTakenOutAndPutInIsSurvivedAndCounted) {
     EXPECT_GT(c.received, before + 300) << "did not resume";
     lost += c.lost;
   }
-  fmt::print("a card taken out and put in: {} frames lost, all counted, {} not sent\n", lost,
-             unsent);
+  fmt::print("card removed and inserted: {} frames lost, all counted, {} not sent\n", lost, unsent);
 }
 
 }  // namespace

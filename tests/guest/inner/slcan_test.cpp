@@ -24,7 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A simulated serial adapter on a pseudo terminal: plugged in while it lives.
+/// A simulated serial adapter on a pseudo terminal, plugged in as long as this object exists.
 class Adapter {
  public:
   Adapter() {
@@ -59,7 +59,7 @@ class Adapter {
   const std::string& name() const { return name_; }
   void up() const { shell("ip link set " + name_ + " up type can bitrate 500000"); }
   void down() const { shell("ip link set " + name_ + " down"); }
-  /// As the adapter would write it.
+  /// Returns the text that the adapter writes for a frame.
   void say(const std::string& text) const {
     const std::string line = text + "\r";
     EXPECT_EQ(::write(adapter_, line.data(), line.size()), static_cast<ssize_t>(line.size()));
@@ -77,7 +77,7 @@ class Adapter {
   std::string name_;
 };
 
-TEST(Slcan, BusOffAndAnUnpluggedAdapterAreSurvivedAndCounted) {
+TEST(Slcan, SurvivesAndCountsBusOffAndAnUnpluggedAdapter) {
   auto adapter = std::make_unique<Adapter>();
   const daemon::Config config = example_on("raw_int16", adapter->name());
   LiveBuses live(config);
@@ -86,7 +86,7 @@ TEST(Slcan, BusOffAndAnUnpluggedAdapterAreSurvivedAndCounted) {
   std::int64_t first_samples = 0;
   constexpr int kInstants = 900;
   auto due = Clock::now();
-  // Nodes go on counting whatever the bus does.
+  // Nodes count on in any state of the bus.
   live.run([&] {
     while (Clock::now() >= due && instant < kInstants) {
       const auto frames = encoder.instant({0.001 * instant, -0.001 * instant});

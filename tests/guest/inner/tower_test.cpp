@@ -22,7 +22,7 @@ double tower_seconds() {
   return set != nullptr ? std::atof(set) : 60;
 }
 
-TEST(Tower, EighteenNodesLoseNothingAndEstimateAsOverLcm) {
+TEST(Tower, EighteenNodesLoseNothingAndGiveTheEstimatesOfLcm) {
   const double seconds = tower_seconds();
   const Vcan vcan("vcan0");
   const daemon::Config config = example_on("tower", "vcan0");

@@ -71,12 +71,12 @@ TEST(Vcan, ASaturatedBusLosesNothing) {
   fmt::print("{} frames in {:.1f} s, 0 lost\n", kNodes * kInstants, took.count());
 }
 
-TEST(Vcan, AnInterfaceThatGoesAndComesLosesWhatItLost) {
+TEST(Vcan, AnInterfaceThatDisappearsLosesOnlyItsOwnFrames) {
   constexpr double kSeconds = 16;
   const Vcan vcan("vcan0");
   const daemon::Config config = example_on("tower", "vcan0");
   LiveBuses live(config);
-  std::optional<Clock::time_point> start;  // of the traffic: a slow build takes seconds until then
+  std::optional<Clock::time_point> start;  // of the traffic; a slow build needs seconds to start
   Process nodes({FRAMEWATCH_PROGRAM, "simulate", kTowerScenario, "--can", "vcan0", "--seconds",
                  fmt::format("{}", kSeconds), "--quiet"});
   int step = 0;
@@ -98,7 +98,7 @@ TEST(Vcan, AnInterfaceThatGoesAndComesLosesWhatItLost) {
   for (std::size_t n = 0; n < config.can.nodes.size(); ++n) {
     const drivers::CanNodeCounters c = live.estimation.can().node(n);
     EXPECT_EQ(c.received + c.lost, instants) << config.can.nodes[n].name;
-    EXPECT_GT(c.lost, 0);  // how many depends on how busy the sender's processor is
+    EXPECT_GT(c.lost, 0);  // the number depends on the load of the sender's processor
     lost += c.lost;
   }
   fmt::print("{} of {} frames lost while the interface was away, all counted\n", lost,

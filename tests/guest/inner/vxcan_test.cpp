@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A bus that loses, delays and reorders what is sent on vx0 before it comes out of vx1.
+/// A bus that loses, delays and reorders frames between vx0 and vx1.
 struct BadBus {
   BadBus() {
     shell(
@@ -34,7 +34,7 @@ struct BadBus {
   BadBus& operator=(const BadBus&) = delete;
 };
 
-TEST(Vxcan, LossReorderingAndJitterPublishNothingWrong) {
+TEST(Vxcan, PublishesNoWrongValueUnderLossReorderingAndJitter) {
   constexpr int kInstants = 2000;
   const BadBus bad_bus;
   const daemon::Config config = example_on("raw_int16", "vx1");
@@ -90,7 +90,7 @@ TEST(Vxcan, LossReorderingAndJitterPublishNothingWrong) {
     EXPECT_EQ(c.received, static_cast<std::int64_t>(came.size()));
     EXPECT_EQ(seen[n].value.size(), came.size());
     EXPECT_EQ(c.restarts, 0);
-    // Numbers are counters but for where they begin.
+    // The numbers are counters with different starts.
     const std::int64_t shift = *came.begin() - seen[n].value.begin()->first;
     for (const auto& [number, v] : seen[n].value) {
       ASSERT_TRUE(came.contains(number + shift));
@@ -102,13 +102,13 @@ TEST(Vxcan, LossReorderingAndJitterPublishNothingWrong) {
   }
   EXPECT_GT(lost, 100);
   EXPECT_GT(reordered, 10);
-  fmt::print("of {} frames {} lost, {} overtaken: all told, no value at a wrong place\n",
+  fmt::print("{} frames: {} lost, {} overtaken; all counted, no value at a wrong time\n",
              2 * kInstants, lost, reordered);
 }
 
-/// While 5 % are lost hardly a window is whole; with a fiftieth of that some are. What is published
-/// is within its errors of the truth.
-TEST(Vxcan, EstimatesOfALossyBusAreRightOrNone) {
+/// At 5 % loss hardly any window is complete, at a fiftieth of that some are. Published values are
+/// within their errors of the truth.
+TEST(Vxcan, EstimatesOfALossyBusAreRightOrMissing) {
   constexpr double kStiffness_npm = 1.3e6, kSeconds = 24;
   constexpr double kErrors = 6, kLimit_ratio = 0.02;
   constexpr std::int64_t kEnoughLost = 40;

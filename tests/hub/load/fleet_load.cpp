@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// fleet_load FOLDER CERTIFICATES COUNT HUB...: COUNT buildings with the uplink's own code in one
-// process, each with a line of its own, until SIGTERM. FOLDER/bN is the history of building N,
-// CERTIFICATES/bN.pem its certificate. A line a second: buildings connected, messages that wait and
-// are under way, acknowledged, bytes sent, seconds of processor.
+// fleet_load FOLDER CERTIFICATES COUNT HUB...: COUNT buildings with the real uplink code in one
+// process, each with a separate connection, until SIGTERM. FOLDER/bN is the history of building N,
+// CERTIFICATES/bN.pem its certificate. Prints a line a second: connected buildings, waiting
+// messages, messages under way, acknowledged ones, bytes sent, seconds of processor.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -41,7 +41,7 @@ Instant now() {
   return {daemon::steady_clock_us(), daemon::host_clock_us()};
 }
 
-/// Nobody asks for raw samples here.
+/// Nobody requests raw samples here.
 class NoExporter : public RawExporter {
  public:
   std::string begin(const RawRequest&, const std::string&) override { return "none"; }
@@ -95,7 +95,7 @@ std::vector<std::uint8_t> parameters() {
   return drivers::encoded(m);
 }
 
-/// Values that no compression makes small, as measured ones.
+/// Returns values that do not compress, like measured ones.
 std::vector<double> measured(int count) {
   static std::mt19937_64 chance(1);
   std::vector<double> out;

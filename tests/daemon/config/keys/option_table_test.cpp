@@ -26,7 +26,7 @@ TEST(ConfigOptions, EveryRowIsComplete) {
   }
 }
 
-TEST(ConfigOptions, DefaultsKeepTheirOwnRules) {
+TEST(ConfigOptions, DefaultsAreWithinTheirRanges) {
   for (const Option& o : options()) {
     if (o.default_value.empty()) continue;
     SCOPED_TRACE(std::string(o.section) + "." + std::string(o.key));
@@ -72,7 +72,7 @@ TEST(ConfigOptions, DocumentationHasEveryRow) {
         << o.section << "." << o.key;
 }
 
-TEST(ConfigSuggest, AdviceFitsTheMistake) {
+TEST(ConfigSuggest, GivesAdviceForKnownMistakes) {
   const auto advice = [](const char* section, const char* key) {
     return advice_on_unknown_key(section, key);
   };

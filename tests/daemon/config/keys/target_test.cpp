@@ -27,7 +27,7 @@ std::string name_of(const Option& o) {
   return std::string(o.section) + "." + std::string(o.key);
 }
 
-TEST(KeyTargets, EveryKeyOfAConfigurationHasAFieldOrAReasonForNone) {
+TEST(KeyTargets, EveryKeyHasAFieldOrAReasonWhyNot) {
   for (const Option& o : options()) {
     const SectionDescription* section = find_section(o.section);
     ASSERT_NE(section, nullptr) << name_of(o);
@@ -71,7 +71,7 @@ void round_trip(std::string_view section, int& keys) {
     const std::string text = std::string(o.key) + " = " + test::another_value(o) + "\n";
     const Settings changed = read<Settings>(section, text);
     EXPECT_FALSE(is_default(changed)) << text;
-    // And no other key's field.
+    // No field of another key changes.
     for (const Option& other : options())
       if (&other != &o && other.section == section && other.target.owner == &kOwner<Settings>) {
         EXPECT_TRUE(other.target.same(&changed, &absent)) << name_of(other);
@@ -107,7 +107,7 @@ TEST(KeyTargets, EveryKeyReachesItsFieldAndNoOther) {
   EXPECT_EQ(keys, all) << "a settings struct is missing above";
 }
 
-TEST(KeyTargets, UnitsAndChoicesAreThoseOfTheFields) {
+TEST(KeyTargets, UnitsAndChoicesMatchTheFields) {
   EXPECT_EQ(read<estimator::SensorAxis>("channel", "tilt_deg = 30").tilt, 30 * M_PI / 180);
   EXPECT_EQ(read<drivers::CanNodeMap>("can_node", "latency_s = 0.002").latency_us, 1e6 * 0.002);
   EXPECT_EQ(read<AxisSource>("channel.source", "axis = \"z\"").axis, 2);
@@ -118,7 +118,7 @@ TEST(KeyTargets, UnitsAndChoicesAreThoseOfTheFields) {
             std::vector<std::int64_t>{30});
 }
 
-TEST(KeyTargets, AWrongValueLeavesTheDefault) {
+TEST(KeyTargets, AWrongValueKeepsTheDefault) {
   EXPECT_EQ(read<LcmSettings>("lcm", "queue_capacity = \"many\"").queue_capacity, 10000);
   EXPECT_EQ(read<estimator::EstimatorOptions>("estimator", "other_windows_s = [[1], 2]\n")
                 .other_windows_s,

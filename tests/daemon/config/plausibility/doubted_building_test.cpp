@@ -13,7 +13,7 @@
 namespace framewatch::daemon {
 namespace doubted_building_test {
 
-/// Two stories of 3.5 m, 6 m x 4 m, 300 kg/m^2, about the frequency that 46 / height gives.
+/// Two stories of 3.5 m, 6 m x 4 m, 300 kg/m^2, near the frequency of 46 / height.
 constexpr const char* kHouse = R"([structure]
 stories = 2
 frames_x = ["y1", "y2"]
@@ -78,7 +78,7 @@ std::string doubts_of(const std::string& text) {
   return test::told(test::good(text).doubts);
 }
 
-/// The only doubt, and what is in it.
+/// Expects exactly one doubt with these parts.
 void expect_doubt(const std::string& text, const std::vector<std::string>& parts) {
   const std::vector<ConfigProblem> doubts = test::good(text).doubts;
   ASSERT_EQ(doubts.size(), 1u) << test::told(doubts);
@@ -98,7 +98,7 @@ std::string model(const std::string& kx) {
   return test::replaced(text, "ky_npm = [[12e6, 10e6], [11e6, 11e6]]", "ky_npm = " + kx);
 }
 
-TEST(DoubtedBuilding, AnOrdinaryHouseAndAModelAreNotDoubted) {
+TEST(DoubtedBuilding, AcceptsAnOrdinaryHouseAndAModel) {
   EXPECT_EQ(doubts_of(kHouse), "");
   EXPECT_EQ(doubts_of(model("[[11e3, 9e3], [8e3, 9e3]]")), "");
 }
@@ -137,7 +137,7 @@ TEST(DoubtedBuilding, MassesInTonnes) {
   EXPECT_NE(told.find("structure.design: with"), std::string::npos) << told;
 }
 
-TEST(DoubtedBuilding, AFloorsMassAtEachOfItsNodes) {
+TEST(DoubtedBuilding, AWholeFloorsMassAtEachNode) {
   std::string text = with("1800.0", "[[[1800, 1800], [1800, 1800]], [[2e4, 2e4], [2e4, 2e4]]]");
   expect_doubt(text, {"c.toml:8:49: ", "of floor 2 are 3.33e+03 kg/m^2",
                       "the whole floor's mass given to each of its nodes?"});
@@ -156,7 +156,7 @@ TEST(DoubtedBuilding, DampingOfTheFirstMode) {
   expect_doubt(with("damping_ratio = 0.02", "damping_ratio = 0.5"),
                {"c.toml:13:17: ", "damping ratio is 0.5; buildings have 0.001 to 0.3"});
   expect_doubt(with("damping_ratio = 0.02", "damping_ratio = 0.0002"), {"0.02 stands for 2 %"});
-  // What single elements have counts, not the ratio that they replace.
+  // Dampings of single elements count, not the ratio that they replace.
   expect_doubt(with("damping_ratio = 0.02", "cx_nspm = 9e5\ncy_nspm = 9e5"),
                {"c.toml:13:11: ", "in another unit than N*s/m?"});
 }
@@ -168,13 +168,14 @@ TEST(DoubtedBuilding, OneStoryAThousandTimesAsStiffAsAnother) {
        "100 times"});
 }
 
-TEST(DoubtedBuilding, WhatIsShippedIsNotDoubted) {
+TEST(DoubtedBuilding, AcceptsShippedConfigurations) {
   int seen = 0;
   for (const char* folder : {"/configs", "/configs/can"})
     for (const auto& entry :
          std::filesystem::directory_iterator(FRAMEWATCH_SOURCE_DIR + std::string(folder))) {
       const std::string path = entry.path().string();
-      if (!path.ends_with(".toml") || path.ends_with("/vehicle.toml")) continue;  // its DBC is not
+      if (!path.ends_with(".toml") || path.ends_with("/vehicle.toml"))
+        continue;  // its DBC is missing
       std::vector<ConfigProblem> problems;
       if (entry.path().filename().string().starts_with("scenario_")) {
         const auto scenario = load_scenario(path, problems);
@@ -190,7 +191,7 @@ TEST(DoubtedBuilding, WhatIsShippedIsNotDoubted) {
   EXPECT_GE(seen, 17);
 }
 
-TEST(DoubtedBuilding, CheckRunAndReplayTellAndGoOn) {
+TEST(DoubtedBuilding, CheckRunAndReplayWarnAndContinue) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("house.toml"), with("[3.5, 3.5]", "400"));
   const std::string doubt = "house.toml:7:18: structure.story_height_m: 400 m";

@@ -38,7 +38,7 @@ Reading read(const std::string& effects, const std::string& building = kBuilding
   return out;
 }
 
-TEST(Effects, EveryOneAtEveryPlaceSurvivesItsText) {
+TEST(Effects, EveryEffectAtEveryPlaceSurvivesItsText) {
   for (const estimator::FloorModel floor :
        {estimator::FloorModel::flexible, estimator::FloorModel::rigid}) {
     const test::TableModel m = test::table_model(floor);
@@ -65,7 +65,7 @@ TEST(Effects, EveryOneAtEveryPlaceSurvivesItsText) {
   }
 }
 
-TEST(Effects, EveryMistakeIsToldAtItsLine) {
+TEST(Effects, EveryMistakeIsReportedWithItsLine) {
   const Reading r = read(R"([[effect]]
 kind = "cubic_stifness"
 [[effect]]
@@ -116,7 +116,7 @@ gc_nsprad = 1
   EXPECT_TRUE(r.says(":35:", "floor = \"rigid\"")) << r.all();
 }
 
-TEST(Effects, ABuildingThatCannotStandIsRefused) {
+TEST(Effects, AnUnstableBuildingIsRefused) {
   const Reading r = read(
       "[[effect]]\nkind = \"p_delta\"\nstory = 1\nframe = \"y1\"\n"
       "weight_n = 1e6\n");
@@ -124,11 +124,11 @@ TEST(Effects, ABuildingThatCannotStandIsRefused) {
   EXPECT_TRUE(r.says(":5:", "cannot stand")) << r.all();
 }
 
-TEST(Effects, AnEffectTableInsteadOfAListIsAMistake) {
+TEST(Effects, ATableInsteadOfAListIsRefused) {
   EXPECT_TRUE(read("[effect]\nkind = \"polarity\"\n").says(":5:", "write [[effect]]"));
 }
 
-TEST(Effects, ASofteningFrameThatRunsAwayIsNoticed) {
+TEST(Effects, ADivergingSofteningFrameIsNoticed) {
   const Reading r = read(
       "[[effect]]\nkind = \"cubic_stiffness\"\nstory = 1\nframe = \"y1\"\n"
       "k3_npm3 = -1e13\n");
@@ -158,7 +158,7 @@ TEST(Effects, ALateChannelIsLateByItsShift) {
   }
 }
 
-TEST(Effects, TruthSaysWhatIsHidden) {
+TEST(Effects, TruthNamesTheHiddenEffects) {
   const Reading r = read(
       "[[effect]]\nkind = \"polarity\"\nchannel = \"base-x\"\n"
       "[[effect]]\nkind = \"extra_mass\"\nstory = 2\nnode = \"x2y1\"\n"

@@ -25,7 +25,7 @@ std::string problems_of(const std::string& text) {
   return test::told(problems);
 }
 
-TEST(FleetSection, SaysWhoTheBuildingIsAndWhereItsHubIs) {
+TEST(FleetSection, NamesTheBuildingAndItsHub) {
   const Config config = test::good(kFleet + "accept = [\"raw\", \"minutes\"]\nraw_kbit_s = 500\n");
   ASSERT_TRUE(config.fleet);
   EXPECT_EQ(config.fleet->building, "kobe-03");
@@ -36,7 +36,7 @@ TEST(FleetSection, SaysWhoTheBuildingIsAndWhereItsHubIs) {
   EXPECT_FALSE(test::good(test::kGoodConfig).fleet);
 }
 
-TEST(FleetSection, WhatIsWrongIsSaidAtItsLine) {
+TEST(FleetSection, ReportsProblemsWithTheirLines) {
   for (const auto& [what, by, rule] :
        {std::tuple("\"kobe-03\"", "\"Kobe\"", "must be 1 to 32 of a-z, 0-9 and -"),
         std::tuple("\"kobe-03\"", "\"all\"", "not all"),
@@ -56,7 +56,7 @@ TEST(FleetSection, WhatIsWrongIsSaidAtItsLine) {
   }
 }
 
-TEST(FleetSection, TakesAHistory) {
+TEST(FleetSection, NeedsAHistory) {
   const std::string told =
       problems_of(test::replaced(kFleet, "[history]\ndirectory = \"h\"\n", ""));
   EXPECT_NE(told.find("needs [history]"), std::string::npos) << told;

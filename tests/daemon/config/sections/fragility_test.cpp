@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [fragility]: HAZUS' limits, medians of one's own, and every way to write it wrong.
+// Tests [fragility]: HAZUS' limits, custom medians, and every mistake.
 #include <algorithm>
 #include <utility>
 
@@ -35,11 +35,11 @@ std::vector<ConfigProblem> wrong(const std::string& section, int stories = 3) {
   return problems;
 }
 
-TEST(Fragility, IsOptionalAndNoTypeIsAssumed) {
+TEST(Fragility, IsOptionalAndAssumesNoType) {
   EXPECT_FALSE(good("").fragility);
 }
 
-TEST(Fragility, OfATypeHasTheLimitsOfASingleStory) {
+TEST(Fragility, GivesATypeTheLimitsOfASingleStory) {
   const Config c = good("[fragility]\ntype = \"C1\"\ndesign_level = \"high\"\n", 8);
   ASSERT_EQ(c.fragility->by_story.size(), 8u);
   for (const estimator::Fragility& f : c.fragility->by_story) {
@@ -50,7 +50,7 @@ TEST(Fragility, OfATypeHasTheLimitsOfASingleStory) {
   EXPECT_EQ(c.fragility->rules.restricted, 0.25);
 }
 
-TEST(Fragility, GoesByTheNumberOfStoriesWhereThatIsAsked) {
+TEST(Fragility, DependsOnTheNumberOfStoriesOnRequest) {
   const auto first = [](const std::string& type, int stories) {
     return good("[fragility]\ntype = \"" + type +
                     "\"\ndesign_level = \"low\"\ndrift_limits = \"height\"\n",
@@ -78,7 +78,7 @@ TEST(Fragility, EveryTypeHasAscendingLimits) {
     }
 }
 
-TEST(Fragility, TakesMediansOfOnesOwnByStoryOrForAll) {
+TEST(Fragility, AcceptsOwnMediansByStoryOrForAll) {
   const Config c = good(
       "[fragility]\nslight_drift_ratio = 0.004\nmoderate_drift_ratio = [0.007, 0.008, 0.009]\n"
       "extensive_drift_ratio = 0.02\ncomplete_drift_ratio = 0.05\nmoderate_dispersion = 0.3\n"
@@ -93,7 +93,7 @@ TEST(Fragility, TakesMediansOfOnesOwnByStoryOrForAll) {
   EXPECT_EQ(mixed.fragility->source, "HAZUS C1L, high code, with medians of [fragility]");
 }
 
-TEST(Fragility, ProblemsAreToldAllAtOnceWithTheirLines) {
+TEST(Fragility, ReportsAllProblemsWithTheirLines) {
   const auto problems = wrong(
       "[fragility]\ntype = \"C9\"\nrestricted_probability = 2\nmoderate_drift_ratio = -1\n"
       "slight_dispersion = \"wide\"\nlimits = 3\n");
@@ -102,7 +102,7 @@ TEST(Fragility, ProblemsAreToldAllAtOnceWithTheirLines) {
   EXPECT_NE(problems[0].message.find("fragility.type: must be one of"), std::string::npos);
 }
 
-TEST(Fragility, WhatDoesNotGoTogetherIsRefused) {
+TEST(Fragility, RefusesContradictingKeys) {
   const std::pair<const char*, const char*> kCases[] = {
       {"[fragility]\n", "must be given if there is no type"},
       {"[fragility]\ntype = \"C1\"\n", "design_level: must be given with type"},

@@ -37,7 +37,7 @@ frame = "y1"
   return text;
 }
 
-TEST(Verticals, OfTheBaseAreUsedWhereTheyShowHowItRocks) {
+TEST(Verticals, AreUsedIfTheyShowHowTheBaseRocks) {
   const Config config = test::good(plane_with({{0, 0}, {10, 0}}));
   ASSERT_EQ(config.pipeline.axes.size(), 4U);
   EXPECT_TRUE(config.pipeline.axes[2].vertical);
@@ -47,7 +47,7 @@ TEST(Verticals, OfTheBaseAreUsedWhereTheyShowHowItRocks) {
   EXPECT_TRUE(config.pipeline.parameters().grouped());
 }
 
-TEST(Verticals, ThatShowNothingAreSaidToBeUnused) {
+TEST(Verticals, AreReportedAsUnusedIfTheyShowNothing) {
   for (const std::string& text :
        {plane_with({{3, 3}}), plane_with({{0, 0}, {4, 4}}),
         plane_with({{0, 0}, {10, 0}}, "use = false"),
@@ -65,7 +65,7 @@ TEST(Verticals, ThatShowNothingAreSaidToBeUnused) {
   }
 }
 
-TEST(Verticals, AreNotUsedWhereFloorPanelsAreIdentified) {
+TEST(Verticals, AreNotUsedIfFloorPanelsAreIdentified) {
   std::string text = test::kGoodConfig;
   for (const char* at : {"x_m = 0\ny_m = 0", "x_m = 1\ny_m = 0", "x_m = 0\ny_m = 1"})
     text += std::string("[[channel]]\nname = \"up ") + at[6] + at[14] +

@@ -48,7 +48,7 @@ event_t event(std::int64_t id, int state = event_state::raised) {
   return e;
 }
 
-TEST(RaisedEvents, WhatIsKnownIsForgottenWhenItIsCleared) {
+TEST(RaisedEvents, ForgetAnAcknowledgementWhenTheEventIsCleared) {
   RaisedEvents raised;
   raised.note(event(1));
   raised.note(event(2));
@@ -65,7 +65,7 @@ TEST(RaisedEvents, WhatIsKnownIsForgottenWhenItIsCleared) {
   EXPECT_EQ(raised.acknowledgement(1), nullptr);
 }
 
-TEST(RaisedEvents, WhatIsKnownIsInTheState) {
+TEST(RaisedEvents, KeepAcknowledgementsInTheState) {
   RaisedEvents raised, again;
   raised.note(event(1));
   raised.acknowledge(1, {5, "me", "loose"});
@@ -104,7 +104,7 @@ class Desk : public testing::Test {
   AcknowledgeDesk desk_{config_, lcm_, [this](const event_t& e, auto&) { done_.push_back(e.id); }};
 };
 
-TEST_F(Desk, AnswersOnceAndSaysEverySecondWhatIsKnown) {
+TEST_F(Desk, AnswersOnceAndPublishesAcknowledgementsEverySecond) {
   here_.note(event(1));
   there_.note(event(2));
   look(0);
@@ -132,7 +132,7 @@ TEST_F(Desk, AnswersOnceAndSaysEverySecondWhatIsKnown) {
   EXPECT_EQ(answers_.size(), 3u);
 }
 
-TEST_F(Desk, RefusesWhatIsNotRaisedAndTakesEverything) {
+TEST_F(Desk, RefusesEventsThatAreNotRaisedAndAcceptsAll) {
   EXPECT_EQ(ask(acknowledge_request(9, "", ""))->refused, "no event 9 is raised");
   EXPECT_EQ(ask(acknowledge_request(0, "", ""))->refused, "no event is raised");
   here_.note(event(1));
@@ -144,7 +144,7 @@ TEST_F(Desk, RefusesWhatIsNotRaisedAndTakesEverything) {
   EXPECT_EQ(here_.acknowledgement(1)->who, "somebody else");
 }
 
-TEST_F(Desk, SaysWhenEverythingWasAcknowledged) {
+TEST_F(Desk, PublishesWhenEverythingWasAcknowledged) {
   here_.note(event(1));
   ask(acknowledge_request(kAllEvents, "", "seen"), 7);
   look(0);
@@ -160,7 +160,7 @@ TEST_F(Desk, SaysWhenEverythingWasAcknowledged) {
   EXPECT_EQ(answers_[1].since_us[0], 9);
 }
 
-TEST_F(Desk, BytesThatAreNoRequestChangeNothing) {
+TEST_F(Desk, IgnoresMalformedRequests) {
   const std::vector<std::uint8_t> junk = {'j', 'u', 'n', 'k'};
   EXPECT_FALSE(desk_.obey(junk, "alice", {&here_}, 5));
   config_.lcm.commands = true;
@@ -170,7 +170,7 @@ TEST_F(Desk, BytesThatAreNoRequestChangeNothing) {
   EXPECT_EQ(answers_.size(), 1u);
 }
 
-TEST_F(Desk, TheClockAndTheNameAreNotTheRequests) {
+TEST_F(Desk, UsesItsOwnClockAndTheVerifiedName) {
   here_.note(event(1));
   acknowledge_t request = acknowledge_request(1, "Bob", "a\n<3>framewatch: forged\x1b[2J");
   request.time_us = 77;
@@ -188,7 +188,7 @@ TEST_F(Desk, TheClockAndTheNameAreNotTheRequests) {
   EXPECT_LE(here_.acknowledgement(1)->comment.size(), 500u);
 }
 
-TEST_F(Desk, TheAnswerFitsAPacketHoweverMuchIsRaised) {
+TEST_F(Desk, TheAnswerAlwaysFitsAPacket) {
   for (int i = 1; i <= static_cast<int>(RaisedEvents::kMax); ++i) here_.note(event(i));
   const auto answer = ask(acknowledge_request(0, std::string(500, 'w'), std::string(500, 'c')));
   ASSERT_TRUE(answer);
@@ -196,7 +196,7 @@ TEST_F(Desk, TheAnswerFitsAPacketHoweverMuchIsRaised) {
   EXPECT_LT(drivers::encoded(*answer).size(), 60'000u);
 }
 
-TEST_F(Desk, WhatComesOverLcmIsObeyedWhereTheConfigurationSaysSo) {
+TEST_F(Desk, ObeysLcmRequestsIfConfigured) {
   here_.note(event(1));
   const std::vector<std::uint8_t> request = drivers::encoded(acknowledge_request(1, "Bob", ""));
   testing::internal::CaptureStderr();
@@ -286,7 +286,7 @@ class Tower : public testing::Test {
   std::optional<acknowledged_t> known_;
 };
 
-TEST_F(Tower, AnAcknowledgedEventIsKnownOverARestartAndInTheHistory) {
+TEST_F(Tower, AnAcknowledgementSurvivesARestartAndIsInTheHistory) {
   std::int64_t id = 0;
   {
     test::Child daemon = run();
@@ -332,7 +332,7 @@ TEST_F(Tower, ADatagramAcknowledgesNothing) {
   EXPECT_EQ(daemon.stop(SIGTERM), 0);
 }
 
-TEST_F(Tower, WithLcmCommandsADatagramDoes) {
+TEST_F(Tower, ADatagramAcknowledgesIfLcmCommandsAreEnabled) {
   add("[lcm]\ncommands = true\n");
   test::Child daemon = run();
   const std::int64_t id = raised();

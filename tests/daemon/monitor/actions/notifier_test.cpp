@@ -27,7 +27,7 @@ constexpr double kNoWaitForAThousand_s = 2;  // time that the caller may lose
 constexpr double kLongestEnd_s = 6;  // with a receiver that does not answer: 2 s and the last poll
 constexpr auto kSoon = 10s;          // for short actions on an idle machine
 
-TEST(Notifier, NeverKeepsWhoeverHasNewsWaitingAndEndsInTime) {
+TEST(Notifier, NeverBlocksItsCallerAndEndsInTime) {
   std::atomic<int> begun = 0;
   double end_s = 0;
   {
@@ -51,7 +51,7 @@ TEST(Notifier, NeverKeepsWhoeverHasNewsWaitingAndEndsInTime) {
   EXPECT_LT(1e-6 * static_cast<double>(steady_clock_us()) - end_s, kLongestEnd_s);
 }
 
-TEST(Notifier, TellsAgainUntilTheServerTakesItAndCountsWhatItDoesNot) {
+TEST(Notifier, RetriesUntilTheServerAcceptsAndCountsFailures) {
   test::HttpServer server;
   server.answer({500, 503, 200, 404, 200});
   ActionSettings settings;
@@ -74,7 +74,7 @@ TEST(Notifier, TellsAgainUntilTheServerTakesItAndCountsWhatItDoesNot) {
   EXPECT_EQ(server.requests().size(), 5u);
 }
 
-TEST(Notifier, AServerThatWasGoneIsToldWhatWaitedAndPatienceEnds) {
+TEST(Notifier, SendsWaitingEventsToAReturningServerUntilATimeout) {
   int port = 0;
   {
     test::HttpServer server;
@@ -109,7 +109,7 @@ std::vector<std::int64_t> ids(ActionQueue& queue, std::int64_t now_us) {
   return out;
 }
 
-TEST(ActionQueue, TellsWhatIsSevereEnoughAndThatItIsOver) {
+TEST(ActionQueue, NotifiesOfSevereEventsAndTheirEnd) {
   ActionQueue queue;
   ActionSettings settings;
   settings.kinds = {"stiffness_change", "gap"};
@@ -128,7 +128,7 @@ TEST(ActionQueue, TellsWhatIsSevereEnoughAndThatItIsOver) {
   EXPECT_EQ(queue.waiting(), 0u);
 }
 
-TEST(ActionQueue, TellsWhatBeginsAndEndsAtOnce) {
+TEST(ActionQueue, NotifiesOfEventsThatBeginAndEndAtOnce) {
   ActionQueue queue;
   queue.configure({});
   event_t e = event(1, event_state::cleared);
@@ -137,7 +137,7 @@ TEST(ActionQueue, TellsWhatBeginsAndEndsAtOnce) {
   EXPECT_EQ(queue.waiting(), 1u);
 }
 
-TEST(ActionQueue, OfChangesOnlyTheNewestIsToldAndNotAtOnce) {
+TEST(ActionQueue, DelaysChangesAndNotifiesOfTheNewest) {
   ActionQueue queue;
   ActionSettings settings;
   settings.changed_every_s = 10;
@@ -160,7 +160,7 @@ TEST(ActionQueue, OfChangesOnlyTheNewestIsToldAndNotAtOnce) {
   EXPECT_FALSE(queue.take(100 * kSecond_us));
 }
 
-TEST(ActionQueue, WhatNobodyWasToldIsToldAsRaised) {
+TEST(ActionQueue, NotifiesOfAnUnreportedEventAsRaised) {
   ActionQueue queue;
   queue.configure({});
   queue.put(event(1), false, 0);
@@ -168,7 +168,7 @@ TEST(ActionQueue, WhatNobodyWasToldIsToldAsRaised) {
   EXPECT_EQ(queue.take(0).value_or(event_t{}).state, event_state::raised);
 }
 
-TEST(ActionQueue, TellsNoMoreThanSoManyInAMinuteTheMostSevereFirst) {
+TEST(ActionQueue, LimitsNotificationsPerMinuteMostSevereFirst) {
   ActionQueue queue;
   ActionSettings settings;
   settings.per_minute = 3;
@@ -182,7 +182,7 @@ TEST(ActionQueue, TellsNoMoreThanSoManyInAMinuteTheMostSevereFirst) {
   EXPECT_EQ(ids(queue, 600 * kSecond_us), (std::vector<std::int64_t>{3, 4}));
 }
 
-TEST(ActionQueue, IsBoundedAndLosesTheLeastSevere) {
+TEST(ActionQueue, IsBoundedAndDropsTheLeastSevere) {
   ActionQueue queue;
   queue.configure({});
   int lost = queue.put(event(0, event_state::raised, severity::warning), false, 0);
@@ -193,7 +193,7 @@ TEST(ActionQueue, IsBoundedAndLosesTheLeastSevere) {
   EXPECT_EQ(queue.take(0).value_or(event_t{}).id, 1);
 }
 
-TEST(ActionQueue, WhatSomebodyKnowsIsNotToldAgainUntilItIsOver) {
+TEST(ActionQueue, KeepsSilentAboutAcknowledgedEventsUntilTheirEnd) {
   ActionQueue queue;
   queue.configure({});
   queue.put(event(1), true, 0);
@@ -204,7 +204,7 @@ TEST(ActionQueue, WhatSomebodyKnowsIsNotToldAgainUntilItIsOver) {
   EXPECT_EQ(ids(queue, 0), std::vector<std::int64_t>{2});
 }
 
-TEST(ActionQueue, WhatWaitsIsNotToldAnyMoreWhenSomebodyKnows) {
+TEST(ActionQueue, DropsWaitingNotificationsOfAcknowledgedEvents) {
   ActionQueue queue;
   queue.configure({});
   queue.put(event(1), false, 0);

@@ -63,7 +63,7 @@ TEST_F(Hook, ItsEnvironmentHasOneLineForEachVariable) {
   EXPECT_EQ(nlohmann::json::parse(event_json(e, "b"))["place"], "F1\nLD_PRELOAD=x");
 }
 
-TEST_F(Hook, GetsTheEventOnItsInputAndInItsEnvironment) {
+TEST_F(Hook, ReceivesTheEventOnItsInputAndInItsEnvironment) {
   ::setenv("WATCHDOG_USEC", "1", 1);
   const DeliveryResult result = run(
       script("cat >input; env >environment; printf '%s' \"$1\" >argument\n", {"$(touch made); *"}));
@@ -87,7 +87,7 @@ TEST_F(Hook, GetsTheEventOnItsInputAndInItsEnvironment) {
   EXPECT_EQ(environment.find("WATCHDOG_USEC"), std::string::npos);
 }
 
-TEST_F(Hook, SaysWhyItFailed) {
+TEST_F(Hook, ReportsWhyItFailed) {
   EXPECT_NE(run(script("echo so; echo it is so >&2; exit 3\n"))
                 .trouble.find("hook: exit status 3: it is so"),
             std::string::npos);
@@ -118,7 +118,7 @@ TEST_F(Hook, IsEndedWithItsGroupWhenItTakesTooLong) {
       kSoon));
 }
 
-TEST_F(Hook, MayReadNothingAndWriteALot) {
+TEST_F(Hook, MayIgnoreItsInputAndWriteALot) {
   ActionSettings settings = script("exec yes\n");
   settings.command_timeout_s = kShortTimeout_s;
   EXPECT_NE(run(settings).trouble.find("ended after"), std::string::npos);
@@ -162,7 +162,7 @@ TEST_F(Webhook, PostsJsonWithTheHeadersOfAFile) {
   EXPECT_EQ(request.headers["x-building"], "7");
 }
 
-TEST_F(Webhook, TriesAgainWhatMayPassAndNothingElse) {
+TEST_F(Webhook, RetriesOnlyTemporaryFailures) {
   test::HttpServer server;
   const auto answered = [&](unsigned status) {
     server.answer({status});
@@ -176,7 +176,7 @@ TEST_F(Webhook, TriesAgainWhatMayPassAndNothingElse) {
   EXPECT_NE(answered(302).trouble, "");
 }
 
-TEST_F(Webhook, ASlowServerOneThatRefusesAndNoHeadersAreTroubles) {
+TEST_F(Webhook, ReportsASlowServerARefusalAndMissingHeaders) {
   int port = 0;
   {
     test::HttpServer server;
@@ -199,7 +199,7 @@ TEST_F(Webhook, ASlowServerOneThatRefusesAndNoHeadersAreTroubles) {
   EXPECT_NE(post_webhook(settings, "{}", never).trouble.find("none: "), std::string::npos);
 }
 
-TEST_F(Webhook, TrustsNoCertificateOfItsOwnMaking) {
+TEST_F(Webhook, TrustsNoSelfSignedCertificate) {
   const std::string key = directory_.path("key"), certificate = directory_.path("certificate");
   const std::string make =
       "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 -subj "

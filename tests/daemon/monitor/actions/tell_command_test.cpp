@@ -20,7 +20,7 @@ std::string config_with_actions(const test::TemporaryDirectory& directory,
   return path;
 }
 
-TEST(Actions, ProblemsOfTheConfigurationAreToldAtOnce) {
+TEST(Actions, ReportProblemsOfTheConfigurationAtOnce) {
   const test::TemporaryDirectory directory;
   const auto problems = [&](const std::string& keys) {
     std::vector<ConfigProblem> found;
@@ -42,7 +42,7 @@ TEST(Actions, ProblemsOfTheConfigurationAreToldAtOnce) {
   EXPECT_NE(both.find("per_minute"), std::string::npos);
 }
 
-TEST(Actions, TellSaysWhetherSomebodyCanBeTold) {
+TEST(Actions, TellReportsWhetherNotificationsWork) {
   const test::TemporaryDirectory directory;
   EXPECT_EQ(tell_command({config_with_actions(directory, "command = [\"true\"]"), "a test"}), 0);
   EXPECT_EQ(tell_command({config_with_actions(directory, "command = [\"false\"]"), "a test"}), 1);

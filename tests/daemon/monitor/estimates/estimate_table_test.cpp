@@ -42,7 +42,7 @@ TEST(EstimateTable, FindsTheWorstOfEachGroup) {
   EXPECT_TRUE(errors.frames.without.empty());
 }
 
-TEST(EstimateTable, AStiffnessWithoutValueIsNamed) {
+TEST(EstimateTable, NamesAStiffnessWithoutValue) {
   Example e;
   e.estimate.reason[1] = 2;
   e.estimate.value[2] = kNone;
@@ -65,7 +65,7 @@ TEST(EstimateTable, ShowsEveryParameterWithItsStatus) {
   EXPECT_TRUE(contains(4, "floor too stiff") && contains(4, " - "));
 }
 
-TEST(EstimateTable, StandsAnEstimateThatIsNotThereYet) {
+TEST(EstimateTable, HandlesAMissingEstimate) {
   const Example e;
   const auto lines = estimate_table(e.table, window_estimate_t{}, e.truth);
   EXPECT_EQ(lines.size(), 5u);

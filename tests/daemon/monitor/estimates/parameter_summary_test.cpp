@@ -24,7 +24,7 @@ SessionEstimates first_record() {
   return out;
 }
 
-TEST(ParameterSummary, LeavesOutWindowsFromBeforeTheBendingWasKnown) {
+TEST(ParameterSummary, LeavesOutWindowsBeforeTheBendingWasKnown) {
   const ParameterSummary one = summarise(first_record(), 0, {0, 6});
   EXPECT_EQ(one.mean, 101);
   EXPECT_EQ(one.boxplot.median, 101);
@@ -32,7 +32,7 @@ TEST(ParameterSummary, LeavesOutWindowsFromBeforeTheBendingWasKnown) {
   EXPECT_EQ(one.observable_ratio, 0.5);
 }
 
-TEST(ParameterSummary, TakesAllWhereNothingBends) {
+TEST(ParameterSummary, TakesAllWindowsIfNothingBends) {
   SessionEstimates session = first_record();
   session.table.name[1] = "ky_1to2";
   session.table.kind[1] = session.table.kind[0];

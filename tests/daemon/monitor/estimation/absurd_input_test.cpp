@@ -83,7 +83,7 @@ std::string axis_of(const Config& config, int node, int axis) {
   return "";
 }
 
-TEST(AbsurdInput, InMessagesIsCountedNamedAndLeftOut) {
+TEST(AbsurdInput, IsCountedNamedAndLeftOutInMessages) {
   const test::TemporaryDirectory directory;
   test::record_table_test(directory.path("rec.lcmlog"), kSeconds);
   const Config config = table_config();
@@ -124,7 +124,7 @@ TEST(AbsurdInput, InMessagesIsCountedNamedAndLeftOut) {
     EXPECT_EQ(hit.status.rejected[i], hit.status.name[i] == name ? sent : 0);
 }
 
-TEST(AbsurdInput, InARecordFileIsReplayedPast) {
+TEST(AbsurdInput, IsSkippedInARecordFile) {
   const test::TemporaryDirectory directory;
   test::record_table_test(directory.path("rec.csv"), kSeconds);
   std::string text = test::read_file(directory.path("rec.csv"));
@@ -192,7 +192,7 @@ std::int64_t spoil(const Config& config, std::vector<drivers::BusFrame>& frames,
   return spoiled;
 }
 
-TEST(AbsurdInput, ExtremesOfInt32OnCanAreCountedAndLeftOut) {
+TEST(AbsurdInput, IsCountedAndLeftOutForExtremesOfInt32OnCan) {
   const Config config = test::can_example("epson_m_a552");
   auto frames = test::can_traffic(config, 1500, 9.80665);
   const std::int64_t spoiled = spoil(config, frames, [](std::int64_t i) {
@@ -208,7 +208,7 @@ TEST(AbsurdInput, ExtremesOfInt32OnCanAreCountedAndLeftOut) {
   EXPECT_FALSE(heard.events.empty());
 }
 
-TEST(AbsurdInput, FloatsOnCanAreNotSmearedOverTheGrid) {
+TEST(AbsurdInput, DoesNotSpreadOverResampledFloatsOnCan) {
   Config config = test::can_example("raw_int16");
   ASSERT_TRUE(config.can.resample);
   for (drivers::CanNodeMap& node : config.can.nodes)  // one float per frame
@@ -237,7 +237,7 @@ TEST(AbsurdInput, FloatsOnCanAreNotSmearedOverTheGrid) {
   EXPECT_FALSE(heard.events.empty());
 }
 
-TEST(AbsurdInput, AnAbsurdTemperatureIsRefused) {
+TEST(AbsurdInput, IsRefusedAsATemperature) {
   Config config = table_config();
   config.watch.emplace();
   config.watch->temperature_channel = "TEMPERATURE";

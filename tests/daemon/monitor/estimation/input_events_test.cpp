@@ -94,7 +94,7 @@ TEST(CanEvents, EmergenciesAreRaisedChangedAndCleared) {
   EXPECT_NE(heard.events[0].message.find("8110h"), std::string::npos);
 }
 
-TEST(CanEvents, EveryBootUpIsToldAndLeavesNothingOpen) {
+TEST(CanEvents, EveryBootUpIsReportedAndLeavesNothingOpen) {
   const Config config = test::can_example("tower");
   Heard heard(config);
   heard.estimation.frame(0, frame(0x701, {0}, 1000));
@@ -109,7 +109,7 @@ TEST(CanEvents, EveryBootUpIsToldAndLeavesNothingOpen) {
   }
 }
 
-TEST(CanEvents, AnInterfaceThatGoesIsToldOnceAndWhenItIsBack) {
+TEST(CanEvents, AnInterfaceThatDisappearsIsReportedOnceUntilItReturns) {
   const Config config = test::can_example("bosch_mm510");
   Heard heard(config);
   for (const bool over : {true, false, false, true, true})
@@ -123,7 +123,7 @@ TEST(CanEvents, AnInterfaceThatGoesIsToldOnceAndWhenItIsBack) {
       CanEvents(config.can).of({drivers::CanNotice::Kind::interface_gone, 0, false, 0, 7})->id);
 }
 
-TEST(CanEvents, GoodTrafficGivesNone) {
+TEST(CanEvents, GoodTrafficRaisesNone) {
   for (const char* name : {"raw_int16", "xsens_mti600", "bosch_mm510", "fd_block", "tower"}) {
     const Config config = test::can_example(name);
     Heard heard(config);
@@ -133,7 +133,7 @@ TEST(CanEvents, GoodTrafficGivesNone) {
   }
 }
 
-TEST(CanEvents, ASecondNodeWithTheSameIdsIsToldOnceAndWhenItIsGone) {
+TEST(CanEvents, ASecondNodeWithTheSameIdsIsReportedOnceUntilItIsGone) {
   for (const char* name : {"raw_int16", "tower"}) {
     const Config config = test::can_example(name);
     Heard heard(config);
@@ -158,7 +158,7 @@ TEST(CanEvents, ASecondNodeWithTheSameIdsIsToldOnceAndWhenItIsGone) {
   }
 }
 
-TEST(CanEvents, ALiveInterfaceThatIsNotThereIsToldOnce) {
+TEST(CanEvents, AMissingInterfaceIsReportedOnce) {
   Config config = test::can_example("tower");
   config.can.buses[0].interface = "nocan9";
   drivers::LcmProvider lcm("memq://");
@@ -218,7 +218,7 @@ class ChannelEventsTest : public ::testing::Test {
   std::int64_t second_ = 1'700'000'000;
 };
 
-TEST_F(ChannelEventsTest, ASilentChannelIsNamedWithTheTimeSinceWhen) {
+TEST_F(ChannelEventsTest, NamesASilentChannelSinceWhen) {
   EXPECT_TRUE(seconds(20, State::good).empty());
   const std::int64_t last_us = 1'000'000 * second_;
   const auto raised = seconds(20, State::silent);
@@ -235,13 +235,13 @@ TEST_F(ChannelEventsTest, ASilentChannelIsNamedWithTheTimeSinceWhen) {
   EXPECT_EQ(cleared[0].state, event_state::cleared);
 }
 
-TEST_F(ChannelEventsTest, OneThatNeverSpokeIsSilentToo) {
+TEST_F(ChannelEventsTest, NamesAChannelThatNeverSent) {
   const auto raised = seconds(10, State::silent);
   ASSERT_EQ(raised.size(), 1u);
   EXPECT_NE(raised[0].message.find("yet"), std::string::npos);
 }
 
-TEST_F(ChannelEventsTest, AStuckChannelIsNamedUntilItMovesAgain) {
+TEST_F(ChannelEventsTest, NamesAStuckChannelUntilItMovesAgain) {
   EXPECT_TRUE(seconds(10, State::good).empty());
   const auto raised = seconds(10, State::stuck);
   ASSERT_EQ(raised.size(), 1u);
@@ -254,7 +254,7 @@ TEST_F(ChannelEventsTest, AStuckChannelIsNamedUntilItMovesAgain) {
   EXPECT_EQ(after.back().state, event_state::cleared);
 }
 
-TEST_F(ChannelEventsTest, AMomentIsNothing) {
+TEST_F(ChannelEventsTest, IgnoresAShortSilence) {
   seconds(10, State::good);
   EXPECT_TRUE(seconds(ChannelEvents::kSilent_s - 1, State::silent).empty());
   EXPECT_TRUE(seconds(5, State::good).empty());
@@ -263,7 +263,7 @@ TEST_F(ChannelEventsTest, AMomentIsNothing) {
 }
 
 /// A shaken table; at half of the record node 3 falls silent and node 4 sticks.
-TEST(ChannelEventsOfARecord, ADeadAndAStuckSensorAreNamedAndNoOther) {
+TEST(ChannelEventsOfARecord, NameOnlyTheDeadAndTheStuckSensor) {
   constexpr double kSeconds = 30, kDies_s = 12;
   constexpr int kSilent = 3, kStuck = 4;
   const test::TemporaryDirectory directory;

@@ -59,7 +59,7 @@ estimator::WindowEstimate estimate(std::int64_t sequence, std::size_t parameters
   return e;
 }
 
-TEST(Publisher, SendsWhatTheEstimatorSaid) {
+TEST(Publisher, PublishesTheEstimates) {
   const Config config = table();
   std::vector<Sent> sent;
   Publisher publisher(config, [&](std::int64_t time_us, const std::string& channel,
@@ -106,7 +106,7 @@ TEST(Publisher, ThinsBoxplotsAsConfigured) {
   EXPECT_EQ(boxplots, (std::vector<std::int32_t>{20, 0, 0, 0, 0, 20, 0, 0, 0, 0, 20}));
 }
 
-TEST(Publisher, TableAndStatusSayWhatTheNumbersMean) {
+TEST(Publisher, PublishesTableAndStatus) {
   Config config = table();
   config.lcm.prefix = "SITE_";
   std::vector<Sent> sent;

@@ -76,7 +76,7 @@ class StateFile : public testing::Test {
   inline static TemporaryDirectory* directory_ = nullptr;
 };
 
-TEST_F(StateFile, AReplayCutAnywhereInTwoGivesTheBytesOfTheUncutOne) {
+TEST_F(StateFile, AReplayInTwoPartsGivesTheBytesOfOne) {
   const std::string bytes = read_file(log());
   LcmLogReader reader;
   ASSERT_TRUE(reader.open(log()));
@@ -98,7 +98,7 @@ TEST_F(StateFile, AReplayCutAnywhereInTwoGivesTheBytesOfTheUncutOne) {
   }
 }
 
-TEST_F(StateFile, APartOfOneLogGoesOnWithTheRestOfIt) {
+TEST_F(StateFile, ContinuesWithinALog) {
   ReplayArguments first = arguments({log()}, "a.lcmlog", "", "state");
   first.span.to_s = 8.5;
   ReplayArguments second = arguments({log()}, "b.lcmlog", "state", "");
@@ -109,7 +109,7 @@ TEST_F(StateFile, APartOfOneLogGoesOnWithTheRestOfIt) {
               read_file(path("uncut.lcmlog")));
 }
 
-TEST_F(StateFile, CsvPartsMakeOneTable) {
+TEST_F(StateFile, CsvPartsJoinToOneTable) {
   ASSERT_EQ(run({log()}, "uncut.csv", "", ""), 0);
   ReplayArguments first = arguments({log()}, "a.csv", "", "state");
   first.span.to_s = 9;
@@ -120,7 +120,7 @@ TEST_F(StateFile, CsvPartsMakeOneTable) {
   EXPECT_TRUE(read_file(path("a.csv")) + read_file(path("b.csv")) == read_file(path("uncut.csv")));
 }
 
-TEST_F(StateFile, DamagedCutOffAndForeignOnesAreRefusedWithTheReason) {
+TEST_F(StateFile, RefusesDamagedTruncatedAndForeignFilesWithTheReason) {
   ASSERT_EQ(run({log()}, "", "", "good"), 0);
   const std::string good = read_file(path("good"));
   ASSERT_GT(good.size(), 10000u);
@@ -201,7 +201,7 @@ int run_and_stop(const std::string& state, const std::string& err) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
-TEST_F(StateFile, RunReadsItWritesItAndPutsAForeignOneAside) {
+TEST_F(StateFile, RunReadsAndWritesItAndSetsAForeignOneAside) {
   const TemporaryDirectory own;
   EXPECT_EQ(run_and_stop(own.path("state"), own.path("first")), 0);
   ASSERT_TRUE(std::filesystem::exists(own.path("state")));

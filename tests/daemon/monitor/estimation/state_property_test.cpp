@@ -263,7 +263,7 @@ void cut_and_go_on(const Case& c, std::vector<std::size_t> cuts,
   }
 }
 
-TEST(StateProperty, CutAtRandomInstantsUnderEveryFaultGoesOnByteByByte) {
+TEST(StateProperty, ContinuesByteByByteFromRandomInstantsUnderEveryFault) {
   const char* wanted = std::getenv("FRAMEWATCH_STATE_CASES");
   const int cases = wanted == nullptr ? kCases : std::atoi(wanted);
   for (int n = 0; n < cases; ++n) {
@@ -282,7 +282,7 @@ TEST(StateProperty, CutAtRandomInstantsUnderEveryFaultGoesOnByteByByte) {
 
 /// Regression: after the interruption the errors of the first windows were zero, and the sums of
 /// the shaking infinite.
-TEST(StateProperty, AFloorSensorThatDiesInTheShakingIsNoEnd) {
+TEST(StateProperty, SurvivesTheLossOfAFloorSensorDuringShaking) {
   const test::TemporaryDirectory directory;
   Random random(7);
   const std::vector<int> floors = {0, 2, 4, 6};

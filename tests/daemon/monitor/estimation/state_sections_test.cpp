@@ -112,7 +112,7 @@ class StateSections : public testing::Test {
 
 using Names = std::vector<std::string>;
 
-TEST_F(StateSections, TheSameConfigurationTakesAll) {
+TEST_F(StateSections, LoadAllWithTheSameConfiguration) {
   Names names;
   for (const StateSection& s : good_.sections) names.push_back(s.name);
   EXPECT_EQ(names, kEverySection);
@@ -124,7 +124,7 @@ TEST_F(StateSections, TheSameConfigurationTakesAll) {
   expect_the_others(config_, *resumed.estimation, {});
 }
 
-TEST_F(StateSections, ADamagedOneCostsItself) {
+TEST_F(StateSections, LoseOnlyTheDamagedSection) {
   const std::vector<std::uint8_t> whole = state_bytes(good_);
   std::size_t at = whole.size();
   for (std::size_t s = good_.sections.size(); s-- > 0;) {
@@ -150,7 +150,7 @@ TEST_F(StateSections, ADamagedOneCostsItself) {
   }
 }
 
-TEST_F(StateSections, OneWithNumbersThatNoEstimationHasCostsItself) {
+TEST_F(StateSections, LoseOnlyASectionWithImpossibleNumbers) {
   for (std::size_t s = 0; s < good_.sections.size(); ++s) {
     SavedState bad = good_;
     std::fill(bad.sections[s].bytes.begin(), bad.sections[s].bytes.end(), std::uint8_t{0xFF});
@@ -164,7 +164,7 @@ TEST_F(StateSections, OneWithNumbersThatNoEstimationHasCostsItself) {
   }
 }
 
-TEST_F(StateSections, OfACutOffFileTheFirstOnesAreTaken) {
+TEST_F(StateSections, LoadTheFirstOfATruncatedFile) {
   const std::vector<std::uint8_t> whole = state_bytes(good_);
   std::size_t kept = whole.size();
   Names lost;
@@ -188,7 +188,7 @@ TEST_F(StateSections, OfACutOffFileTheFirstOnesAreTaken) {
   }
 }
 
-TEST_F(StateSections, AnotherProgramsFormatOrHeadIsRefusedAsAWhole) {
+TEST_F(StateSections, RefuseAnotherFormatOrHeadAsAWhole) {
   const std::vector<std::uint8_t> whole = state_bytes(good_);
   std::string bytes(whole.begin(), whole.end());
   bytes[8 + 17] ^= 64;  // the format follows the magic word and its length
@@ -200,7 +200,7 @@ TEST_F(StateSections, AnotherProgramsFormatOrHeadIsRefusedAsAWhole) {
   EXPECT_NE(Resumed(config_).loaded.problem.find("its head"), std::string::npos);
 }
 
-TEST_F(StateSections, AnotherConfigurationCostsWhatRestsOnTheDifference) {
+TEST_F(StateSections, LoseOnlySectionsThatDependOnChangedKeys) {
   ASSERT_EQ(write_state(path("state"), good_), "");
   const auto lost = [&](const Config& config) { return Resumed(config).lost(); };
   EXPECT_EQ(lost(configured("other.toml", [](std::string& text) { text += "# a comment\n"; })),
@@ -216,7 +216,7 @@ TEST_F(StateSections, AnotherConfigurationCostsWhatRestsOnTheDifference) {
   EXPECT_EQ(lost(replaced("[gap]\n", "")), Names{});
 }
 
-TEST_F(StateSections, ASectionThatTheFileDoesNotHaveIsSaid) {
+TEST_F(StateSections, ReportAMissingSection) {
   SavedState without = good_;
   std::erase_if(without.sections, [](const StateSection& s) { return s.name == "gap"; });
   ASSERT_EQ(write_state(path("state"), without), "");
@@ -226,7 +226,7 @@ TEST_F(StateSections, ASectionThatTheFileDoesNotHaveIsSaid) {
   expect_the_others(config_, *resumed.estimation, {"gap"});
 }
 
-TEST_F(StateSections, WhatWasLearnedOutlivesTheWindowAndTheDetection) {
+TEST_F(StateSections, KeepTheBaselineWithoutWindowAndDetection) {
   SavedState without = good_;
   std::erase_if(without.sections,
                 [](const StateSection& s) { return s.name == "window" || s.name == "watch"; });
@@ -242,7 +242,7 @@ TEST_F(StateSections, WhatWasLearnedOutlivesTheWindowAndTheDetection) {
   EXPECT_GT(resumed.estimation->windows(), whole.windows());
 }
 
-TEST_F(StateSections, FindingsThatNobodyCouldClearAreWithdrawn) {
+TEST_F(StateSections, WithdrawFindingsThatNothingCouldClear) {
   Estimation estimation(config_, {});
   ASSERT_EQ(estimation.load(good_.sections), "");
   event_t alarm{};

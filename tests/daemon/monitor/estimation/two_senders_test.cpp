@@ -131,7 +131,7 @@ Attack twin(const LcmSender& sender, const std::function<void(SensorNodeSample&)
 
 using Kinds = std::vector<std::string>;
 
-TEST(TwoSenders, AStrayChannelTableChangesNoEstimateAndIsAnEvent) {
+TEST(TwoSenders, AStrayChannelTableRaisesAnEventAndChangesNoEstimate) {
   Played run(building());
   bool sent = false;
   play(run, kSensors, [&](Played& r, const drivers::LogEvent& event, double time_s) {
@@ -151,7 +151,7 @@ TEST(TwoSenders, AStrayChannelTableChangesNoEstimateAndIsAnEvent) {
             "F1-Y1 is node 2 x of ACCEL: the configuration holds");
 }
 
-TEST(TwoSenders, NamesInATableAreNotRepeatedAsTheyAre) {
+TEST(TwoSenders, EscapesNamesOfATable) {
   Played run(building());
   const auto table =
       drivers::AccelMessages({"x\x1b[2J\n<0>well"}, {{"ACCEL", 2, 0}}, 100).tables(0).front();
@@ -162,7 +162,7 @@ TEST(TwoSenders, NamesInATableAreNotRepeatedAsTheyAre) {
       << run.events[0].message;
 }
 
-TEST(TwoSenders, ATwinFromAnotherAddressChangesNoEstimateAndIsAnEvent) {
+TEST(TwoSenders, ATwinFromAnotherAddressRaisesAnEventAndChangesNoEstimate) {
   Played run(building());
   play(run, kSensors, twin(kStranger, [](SensorNodeSample&) {}));
   EXPECT_TRUE(run.estimate_bytes == undisturbed().estimate_bytes);
@@ -175,14 +175,14 @@ TEST(TwoSenders, ATwinFromAnotherAddressChangesNoEstimateAndIsAnEvent) {
   EXPECT_NEAR(static_cast<double>(run.status.rejected[2]), 100 * (kSeconds - kAttack_s), 1);
 }
 
-TEST(TwoSenders, OrNoneOfThemByConfiguration) {
+TEST(TwoSenders, StopsBothTwinsIfSoConfigured) {
   Played run(building("none"));
   play(run, kSensors, twin(kStranger, [](SensorNodeSample&) {}));
   EXPECT_NEAR(static_cast<double>(run.status.received[2]), 100 * kAttack_s, 2);
   EXPECT_EQ(run.kinds().front(), "two_senders F1-Y1");
 }
 
-TEST(TwoSenders, ATwinWithoutAnAddressIsToldByItsNumbers) {
+TEST(TwoSenders, DetectsATwinWithoutAnAddressByItsNumbers) {
   const std::map<std::string, std::function<void(SensorNodeSample&)>> twins = {
       {"far numbers", [](SensorNodeSample& s) { s.sequence += 5'000'000; }},
       {"another phase",
@@ -204,7 +204,7 @@ TEST(TwoSenders, ATwinWithoutAnAddressIsToldByItsNumbers) {
   }
 }
 
-TEST(TwoSenders, ATwinThatNothingTellsApartStopsTheNode) {
+TEST(TwoSenders, AnIndistinguishableTwinStopsTheNode) {
   Played run(building());
   play(run, {}, twin({}, [](SensorNodeSample&) {}));
   EXPECT_NEAR(static_cast<double>(run.status.received[2]), 100 * kAttack_s, 5);
@@ -213,7 +213,7 @@ TEST(TwoSenders, ATwinThatNothingTellsApartStopsTheNode) {
   EXPECT_FALSE(run.well());
 }
 
-TEST(TwoSenders, LostCannotBeSetByOneMessage) {
+TEST(TwoSenders, OneMessageCannotSetTheLossCounter) {
   for (const std::int64_t far : {1'000'000LL, 9'999'999LL, 1LL << 62, -(1LL << 62)}) {
     Played run(building());
     bool sent = false;
@@ -229,7 +229,7 @@ TEST(TwoSenders, LostCannotBeSetByOneMessage) {
   }
 }
 
-TEST(TwoSenders, WhatIsRaisedIsClearedAndGoesOnOverARestart) {
+TEST(TwoSenders, RaisedEventsSurviveARestartAndAreCleared) {
   const Config config = building();
   Played run(config);
   const auto at = [](std::int64_t i) { return 10'000 * (i + 1); };

@@ -47,7 +47,7 @@ class DriftReportTest : public testing::Test {
   estimator::DriftKnowledge known_;
 };
 
-TEST_F(DriftReportTest, SaysThePlacardWithItsReason) {
+TEST_F(DriftReportTest, GivesThePlacardWithItsReason) {
   const DriftReport quiet = report();
   ASSERT_TRUE(quiet.placard);
   EXPECT_EQ(placard_words(*quiet.placard), "inspected");
@@ -60,13 +60,13 @@ TEST_F(DriftReportTest, SaysThePlacardWithItsReason) {
   EXPECT_NE(strong.reason.find("extensive or worse damage is 50 % likely"), std::string::npos);
 }
 
-TEST_F(DriftReportTest, IsNeverInspectedBesideALastingLoss) {
+TEST_F(DriftReportTest, NeverSaysInspectedWithALastingLoss) {
   const DriftReport r = report("frame y1 of story 1 lost 12.0 % of its stiffness");
   EXPECT_EQ(r.placard->placard, estimator::Placard::restricted);
   EXPECT_EQ(r.reason.find("Frame y1 of story 1 lost 12.0 %"), 0u) << r.reason;
 }
 
-TEST_F(DriftReportTest, IsNotJudgedWhereADriftIsNotKnown) {
+TEST_F(DriftReportTest, IsNotJudgedIfADriftIsUnknown) {
   for (double& drift : peak_.drift_m) drift = estimator::kNaN;
   const DriftReport r = report();
   EXPECT_EQ(placard_words(*r.placard), "restricted use (not judged)");
@@ -84,7 +84,7 @@ TEST_F(DriftReportTest, IsNotJudgedWithAGapAtThePeak) {
   EXPECT_NE(r.reason.find("drift of story 1 is unknown in part"), std::string::npos) << r.reason;
 }
 
-TEST_F(DriftReportTest, WithoutFragilityTellsDriftsOnly) {
+TEST_F(DriftReportTest, WithoutFragilityGivesOnlyDrifts) {
   config_.fragility.reset();
   const DriftReport r = report();
   EXPECT_FALSE(r.placard);
@@ -98,7 +98,7 @@ TEST_F(DriftReportTest, WithoutFragilityTellsDriftsOnly) {
   EXPECT_GT(json["stories"][0]["std_error_ratio"].get<double>(), 0);
 }
 
-TEST_F(DriftReportTest, PageAndJsonSayTheSame) {
+TEST_F(DriftReportTest, PageAndJsonAgree) {
   peak_.drift_m[0] = 0.012;
   const DriftReport r = report();
   const std::string page = placard_section(r) + drift_table_section(r, config_);

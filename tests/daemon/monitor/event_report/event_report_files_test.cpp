@@ -14,7 +14,7 @@ std::string report(const std::string& verdict) {
   return R"({"verdict": ")" + verdict + R"(", "reasons": ["why"], "start_us": 5, "end_us": 9})";
 }
 
-TEST(NewestEventReport, IsTheOneThatWasWrittenLast) {
+TEST(NewestEventReport, IsTheLastWrittenOne) {
   const test::TemporaryDirectory directory;
   NewestEventReport newest(directory.path(""));
   EXPECT_FALSE(newest.poll());
@@ -33,7 +33,7 @@ TEST(NewestEventReport, IsTheOneThatWasWrittenLast) {
   EXPECT_FALSE(NewestEventReport("").poll());
 }
 
-TEST(NewestEventReport, WhatIsNoReportIsNone) {
+TEST(NewestEventReport, IgnoresOtherFiles) {
   for (const std::string& text :
        {std::string(), std::string("{"), report("blue"), std::string("[1]"),
         std::string(R"({"verdict": "red", "reasons": [], "start_us": 5, "end_us": 9})"),
@@ -44,7 +44,7 @@ TEST(NewestEventReport, WhatIsNoReportIsNone) {
   }
 }
 
-TEST(NewestEventReport, ANameLeadsNowhereElse) {
+TEST(NewestEventReport, DoesNotFollowANameOutOfItsFolder) {
   EXPECT_TRUE(is_event_report_name("event-20261124T000000Z"));
   for (const char* name : {"event-20261124T000000Z.json", "event-", "", "../20261124T000000Z",
                            "event-20261124T000000/", "event-20269924T000000Z"})

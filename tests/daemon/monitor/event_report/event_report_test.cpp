@@ -75,7 +75,7 @@ TEST_F(EventReportTest, IsYellowOrRedByDrift) {
   EXPECT_FALSE(green_and_past(event_of(report_, *config_), INT64_MAX));
 }
 
-TEST_F(EventReportTest, SaysFirstWhatWasNotHeard) {
+TEST_F(EventReportTest, StartsWithMissingSamples) {
   const estimator::Time start = report_.shaking.start;
   report_.shaking.drift_settles_s = 7;
   report_.shaking.unheard = {{start + std::chrono::seconds(4), start + std::chrono::seconds(32),
@@ -110,7 +110,7 @@ TEST_F(EventReportTest, SaysFirstWhatWasNotHeard) {
                   .is_null());
 }
 
-TEST_F(EventReportTest, SaysWhichDriftsAreComputed) {
+TEST_F(EventReportTest, NamesComputedDrifts) {
   EXPECT_EQ(event_report_html(report_, *config_).find("computed"), std::string::npos);
   std::vector<ConfigProblem> problems;
   const auto partial = parse_config("six.toml", R"([structure]
@@ -158,7 +158,7 @@ frame = "y1"
     EXPECT_EQ(story["drift_is"], story["story"] == 1 ? "measured" : "computed") << story;
 }
 
-TEST_F(EventReportTest, AnOpenRecordIsNeverGreenAndItsNumberIsTheReports) {
+TEST_F(EventReportTest, AnUnfinishedRecordIsNeverGreen) {
   estimator::ShakenStiffness& k = report_.shaking.stiffness[1];
   k.watched = true;
   k.record.id = 1;
@@ -176,13 +176,13 @@ TEST_F(EventReportTest, AnOpenRecordIsNeverGreenAndItsNumberIsTheReports) {
   EXPECT_EQ(verdict().color, EventColor::red);
 }
 
-TEST_F(EventReportTest, WhatWatchDoesNotClaimIsNoLoss) {
+TEST_F(EventReportTest, ReportsNoLossThatWatchDoesNotReport) {
   report_.shaking.stiffness[1].after.value = 900;
   report_.shaking.stiffness[1].watched = true;
   EXPECT_EQ(verdict().color, EventColor::green);
 }
 
-TEST_F(EventReportTest, WhatEverythingHasInCommonIsYellow) {
+TEST_F(EventReportTest, IsYellowIfEveryElementChangesAlike) {
   report_.everything.id = 1;
   report_.everything.state = estimator::ChangeState::measured;
   report_.everything.change.ratio = -0.05;
@@ -192,7 +192,7 @@ TEST_F(EventReportTest, WhatEverythingHasInCommonIsYellow) {
             std::string::npos);
 }
 
-TEST_F(EventReportTest, IsYellowOrRedByALossThatIsCertain) {
+TEST_F(EventReportTest, IsYellowOrRedByACertainLoss) {
   report_.shaking.stiffness[1].after.value = 900;
   EXPECT_EQ(verdict().color, EventColor::yellow);
   EXPECT_NE(verdict().reasons.front().find("frame y2 of story 1 (kx_1_y2) lost 10.0 %"),
@@ -204,7 +204,7 @@ TEST_F(EventReportTest, IsYellowOrRedByALossThatIsCertain) {
   EXPECT_EQ(verdict().color, EventColor::red);
 }
 
-TEST_F(EventReportTest, IsNotGreenWhenADriftIsNotKnown) {
+TEST_F(EventReportTest, IsNotGreenIfADriftIsUnknown) {
   for (double& drift : report_.shaking.peak.drift_m) drift = estimator::kNaN;
   EXPECT_EQ(verdict().color, EventColor::yellow);
   EXPECT_NE(verdict().reasons.front().find("not known"), std::string::npos);
@@ -216,7 +216,7 @@ TEST_F(EventReportTest, SaysWhenNoStiffnessCouldBeCompared) {
   EXPECT_NE(verdict().reasons.back().find("no stiffness could be compared"), std::string::npos);
 }
 
-TEST_F(EventReportTest, PageAndJsonSayTheSame) {
+TEST_F(EventReportTest, PageAndJsonAgree) {
   report_.shaking.peak.drift_m[0] = 0.006;
   report_.shaking.peak.base_shear_n = {1234, estimator::kNaN};
   event_t finding{};
@@ -236,7 +236,7 @@ TEST_F(EventReportTest, PageAndJsonSayTheSame) {
   EXPECT_EQ(json["sensors"].size(), config_->pipeline.axes.size());
 }
 
-TEST_F(EventReportTest, TheOldestFilesAreRemovedAndNoOthers) {
+TEST_F(EventReportTest, RemovesOnlyTheOldestFiles) {
   const std::string folder = config_->event_report->directory;
   {
     EventReportFiles files;
@@ -256,12 +256,12 @@ TEST_F(EventReportTest, TheOldestFilesAreRemovedAndNoOthers) {
   EXPECT_EQ(names.back(), "event-notes.json");
 }
 
-TEST_F(EventReportTest, AFolderThatCannotBeMadeIsSaid) {
+TEST_F(EventReportTest, ReportsAFolderThatItCannotCreate) {
   test::write_file(directory_.path("file"), "");
   EXPECT_NE(write_event_report(report_, *config_, directory_.path("file/reports")), "");
 }
 
-TEST(EventReportConfig, ThresholdsAscend) {
+TEST(EventReportConfig, RefusesThresholdsThatDoNotAscend) {
   test::TemporaryDirectory directory;
   test::write_file(directory.path("b.toml"),
                    test::read_file(test::table_config()) +

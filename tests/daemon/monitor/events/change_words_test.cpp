@@ -18,7 +18,7 @@ estimator::Parameter frames(int first, int last) {
   return p;
 }
 
-TEST(ChangeWords, ALossOfAGroupIsALargerOneOfAStory) {
+TEST(ChangeWords, ALossOfAGroupMeansALargerLossOfAStory) {
   constexpr double kLoss = 0.02;
   const estimator::Parameter four = frames(5, 8), one = frames(5, 5);
   EXPECT_NEAR(loss_of_one_story(four, kLoss), 0.0755, 1e-4);  // springs in series
@@ -28,7 +28,7 @@ TEST(ChangeWords, ALossOfAGroupIsALargerOneOfAStory) {
   EXPECT_EQ(loss_of_one_story(four, 0), 0);
 }
 
-TEST(ChangeWords, AGroupSaysWhatItMayBeOfOneStory) {
+TEST(ChangeWords, AGroupsLossGivesThePossibleLossOfOneStory) {
   EXPECT_EQ(change_sentence(frames(5, 8), -0.02, 0.001),
             "stories 5 to 8, along x (kx_5to8) have lost 2.0 % of their stiffness, give or take "
             "0.1 %: 20 times its uncertainty; one of stories 5 to 8 may have lost up to 8 %");
@@ -51,7 +51,7 @@ TEST(ChangeWords, WithoutANumberItIsChanging) {
 
 namespace {
 
-TEST(PlaceWords, SayWhereAParameterIs) {
+TEST(PlaceWords, DescribeThePlaceOfAParameter) {
   EXPECT_EQ(place_words("kx_1_y2"), "story 1, frame y2");
   EXPECT_EQ(place_words("Gk_2_x1y1"), "floor 2, panel x1y1");
   EXPECT_EQ(place_words("kx_6to12"), "stories 6 to 12, along x");
@@ -62,7 +62,7 @@ TEST(PlaceWords, SayWhereAParameterIs) {
   EXPECT_EQ(place_words("kry"), "frames along y");
 }
 
-TEST(PlaceWords, SayWhatAParameterIsOf) {
+TEST(PlaceWords, DescribeTheElementOfAParameter) {
   EXPECT_EQ(element_words("kx_1_y2"), "frame y2 of story 1");
   EXPECT_EQ(element_words("Gk_2_x1y1"), "floor panel x1y1 of floor 2");
   EXPECT_EQ(element_words("kx_6to12"), "stories 6 to 12 along x");
@@ -70,7 +70,7 @@ TEST(PlaceWords, SayWhatAParameterIsOf) {
   EXPECT_EQ(element_words("krx"), "bending of frames along x");
 }
 
-TEST(PlaceWords, TakeAnyText) {
+TEST(PlaceWords, AcceptAnyText) {
   for (const char* name : {"", "_", "__", "k_", "k__", "_1_"}) {
     (void)place_words(name);
     (void)element_words(name);
@@ -98,7 +98,7 @@ RecoveryLaw law_after(double time_s, double loss) {
   return law;
 }
 
-TEST(RecoveryWords, SayLossTimeAndWhatIsExpected) {
+TEST(RecoveryWords, DescribeLossTimeAndExpectation) {
   RecoveryLaw law = law_after(3600, 0.06);
   law.verdict = RecoveryVerdict::recovering;
   EXPECT_EQ(recovery_words(law),
@@ -115,7 +115,7 @@ TEST(RecoveryWords, SayLossTimeAndWhatIsExpected) {
             "lost 9 % at the earthquake, 0 % (+-1 %) after 10 minutes, recovered");
 }
 
-TEST(RecoveryWords, SayWhyNothingIsKnown) {
+TEST(RecoveryWords, DescribeWhyNothingIsKnown) {
   RecoveryLaw law = law_after(40, 0.08);
   law.reason = RecoveryReason::short_time;
   EXPECT_EQ(recovery_words(law),

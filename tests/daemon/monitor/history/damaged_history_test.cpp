@@ -109,25 +109,25 @@ class DamagedHistory : public testing::Test {
   Config config_;
 };
 
-TEST_F(DamagedHistory, ADatabaseOfWhichHalfIsThereIsSetAside) {
+TEST_F(DamagedHistory, SetsATruncatedDatabaseAside) {
   cut_in_half();
   const std::string half = test::read_file(database());
   expect_a_new_one({});
   EXPECT_EQ(test::read_file(set_aside().at(0)), half);
 }
 
-TEST_F(DamagedHistory, WhatIsNoDatabaseIsSetAside) {
+TEST_F(DamagedHistory, SetsAFileAsideThatIsNotADatabase) {
   test::write_file(database(), std::string(10'000, 'n'));
   fs::remove(database() + "-wal");
   expect_a_new_one({});
 }
 
-TEST_F(DamagedHistory, EventsThatCanStillBeReadAreTakenOver) {
+TEST_F(DamagedHistory, KeepsReadableEvents) {
   damage("period");
   expect_a_new_one({1});
 }
 
-TEST_F(DamagedHistory, PeriodsThatNobodyCanHaveWrittenAreLeftOut) {
+TEST_F(DamagedHistory, LeavesOutImpossiblePeriods) {
   std::vector<SummaryPeriods> sound;
   std::optional<std::int64_t> newest_us;
   for (const bool damaged : {false, true}) {
@@ -151,12 +151,12 @@ TEST_F(DamagedHistory, PeriodsThatNobodyCanHaveWrittenAreLeftOut) {
   }
 }
 
-TEST_F(DamagedHistory, DamageThatShowsWhileItRunsIsSetAsideThen) {
+TEST_F(DamagedHistory, SetsADatabaseAsideWhenDamageShowsLater) {
   damage("event");
   expect_a_new_one({});
 }
 
-TEST_F(DamagedHistory, OneThatIsWellOrLockedOrNewerStays) {
+TEST_F(DamagedHistory, KeepsAnIntactLockedOrNewerDatabase) {
   {
     SqliteFile file;
     ASSERT_TRUE(file.open(database()));
@@ -169,14 +169,14 @@ TEST_F(DamagedHistory, OneThatIsWellOrLockedOrNewerStays) {
   EXPECT_TRUE(set_aside().empty());
 }
 
-TEST(SetAsideDatabase, OneThatCannotBeIsATrouble) {
+TEST(SetAsideDatabase, ReportsADatabaseThatCannotBeSetAside) {
   SetAside aside;
   set_aside_database("/sys/kernel/notes", 0, "malformed", aside);
   EXPECT_NE(aside.problem.find("cannot be set aside"), std::string::npos) << aside.problem;
   EXPECT_EQ(aside.count, 0);
 }
 
-TEST_F(DamagedHistory, TheCommandSaysSoAndWritesNothing) {
+TEST_F(DamagedHistory, TheCommandReportsDamageAndWritesNothing) {
   for (const bool half : {true, false}) {
     if (half)
       damage("summary");
@@ -196,7 +196,7 @@ TEST_F(DamagedHistory, TheCommandSaysSoAndWritesNothing) {
   }
 }
 
-TEST(HistoryMonitor, ADatabaseThatWasSetAsideIsAnAlarmThatStays) {
+TEST(HistoryMonitor, KeepsAnAlarmForADatabaseThatWasSetAside) {
   HistoryMonitor monitor;
   history_status_t s{};
   SetAside aside;

@@ -119,7 +119,7 @@ class HistoryCommand : public testing::Test {
   std::string config_path_;
 };
 
-TEST_F(HistoryCommand, WithoutMoreSaysWhatThereIsOnOneScreen) {
+TEST_F(HistoryCommand, PrintsAnOverviewWithoutArguments) {
   const Ran ran = run(arguments());
   EXPECT_EQ(ran.code, 0) << ran.problems;
   for (const char* part : {"the table: ", "raw samples", "from 2026-11-22T00:00:00Z", "3 logs",
@@ -131,7 +131,7 @@ TEST_F(HistoryCommand, WithoutMoreSaysWhatThereIsOnOneScreen) {
   EXPECT_EQ(run(of_directory).out, ran.out);
 }
 
-TEST_F(HistoryCommand, SummariesAsCsvAreThoseAskedFor) {
+TEST_F(HistoryCommand, WritesRequestedSummariesAsCsv) {
   HistoryArguments a = arguments();
   a.out = directory_.path("s.csv");
   a.from = "2026-11-22T00:00:01Z";
@@ -149,7 +149,7 @@ TEST_F(HistoryCommand, SummariesAsCsvAreThoseAskedFor) {
             "2026-11-22T00:00:02Z,1795305602,1,cx_1_y1,N*s/m,4,0,,,,,,,,,,0\n");
 }
 
-TEST_F(HistoryCommand, SummariesAsMatHoldTheSame) {
+TEST_F(HistoryCommand, WritesTheSameSummariesAsMat) {
   HistoryArguments a = arguments();
   a.out = directory_.path("s.mat");
   a.period_s = 2;
@@ -169,7 +169,7 @@ TEST_F(HistoryCommand, SummariesAsMatHoldTheSame) {
   Mat_Close(file);
 }
 
-TEST_F(HistoryCommand, RawSamplesAsALogGoWhereTheConfigurationSays) {
+TEST_F(HistoryCommand, WritesRawSamplesAsALogWithConfiguredAddresses) {
   HistoryArguments a = arguments();
   a.raw = directory_.path("r.lcmlog");
   const Ran ran = run(a);
@@ -193,10 +193,10 @@ TEST_F(HistoryCommand, RawSamplesAsALogGoWhereTheConfigurationSays) {
     last = sample->sequence;
   }
   EXPECT_EQ(samples, (kInstants - (kLostTo - kLostFrom)) * kAxes);
-  EXPECT_EQ(jump, kLostTo - kLostFrom + 1) << "what was lost is missing in the sequence";
+  EXPECT_EQ(jump, kLostTo - kLostFrom + 1) << "the sequence skips lost samples";
 }
 
-TEST_F(HistoryCommand, TemperaturesStandInALogWhereTheyWereHeard) {
+TEST_F(HistoryCommand, KeepsTemperaturesInTheOrderOfTheLog) {
   HistoryArguments a = arguments();
   a.raw = directory_.path("r.lcmlog");
   const Ran ran = run(a);
@@ -217,7 +217,7 @@ TEST_F(HistoryCommand, TemperaturesStandInALogWhereTheyWereHeard) {
   EXPECT_EQ(degc, (std::vector<double>{3, 6, 9})) << "the first came before every sample";
 }
 
-TEST_F(HistoryCommand, RawSamplesAsCsvAreARecord) {
+TEST_F(HistoryCommand, WritesRawSamplesAsACsvRecord) {
   HistoryArguments a = arguments();
   a.raw = directory_.path("r.csv");
   a.channels = {"F1-*", "base-x"};
@@ -233,7 +233,7 @@ TEST_F(HistoryCommand, RawSamplesAsCsvAreARecord) {
   EXPECT_EQ(run(a).out, csv) << "notes are no data";
 }
 
-TEST_F(HistoryCommand, RawSamplesAsMiniseedGiveBackEveryCount) {
+TEST_F(HistoryCommand, WritesEveryCountAsMiniseed) {
   HistoryArguments a = arguments();
   a.raw = directory_.path("r.mseed");
   a.station = "TABLE";
@@ -257,7 +257,7 @@ TEST_F(HistoryCommand, RawSamplesAsMiniseedGiveBackEveryCount) {
   EXPECT_EQ(seen, (kInstants - (kLostTo - kLostFrom)) * kAxes);
 }
 
-TEST_F(HistoryCommand, RawSamplesAsMiniseedComeBackAsARecord) {
+TEST_F(HistoryCommand, ReadsItsMiniseedAsARecord) {
   HistoryArguments a = arguments();
   a.raw = directory_.path("r.mseed");
   ASSERT_EQ(run(a).code, 0);
@@ -285,7 +285,7 @@ TEST_F(HistoryCommand, RawSamplesAsMiniseedComeBackAsARecord) {
   }
 }
 
-TEST_F(HistoryCommand, TellsEveryProblemAtOnceAndWritesNothing) {
+TEST_F(HistoryCommand, ReportsEveryProblemAndWritesNothing) {
   HistoryArguments a = arguments();
   a.out = directory_.path("s.xlsx");
   a.raw = directory_.path("r.sac");
@@ -304,7 +304,7 @@ TEST_F(HistoryCommand, TellsEveryProblemAtOnceAndWritesNothing) {
   EXPECT_EQ(directory_.names(), before);
 }
 
-TEST_F(HistoryCommand, AFileThatCannotBeMadeIsTold) {
+TEST_F(HistoryCommand, ReportsAFileThatItCannotCreate) {
   HistoryArguments a = arguments();
   a.raw = directory_.path("not there/r.mseed");
   EXPECT_EQ(run(a).code, 2);
@@ -313,7 +313,7 @@ TEST_F(HistoryCommand, AFileThatCannotBeMadeIsTold) {
   EXPECT_EQ(run(a).code, 2);
 }
 
-TEST_F(HistoryCommand, ATimeWithoutSamplesIsTold) {
+TEST_F(HistoryCommand, ReportsATimeWithoutSamples) {
   HistoryArguments a = arguments();
   a.raw = directory_.path("r.csv");
   a.to = "2020-01-01";
@@ -323,7 +323,7 @@ TEST_F(HistoryCommand, ATimeWithoutSamplesIsTold) {
   EXPECT_FALSE(std::filesystem::exists(a.raw));
 }
 
-TEST_F(HistoryCommand, RawLogsAloneAreAHistoryToo) {
+TEST_F(HistoryCommand, AcceptsAHistoryOfRawLogsOnly) {
   for (const char* ending : {"", "-wal", "-shm"})
     std::filesystem::remove(summary_file(config_.history->directory) + ending);
   HistoryArguments a;
@@ -335,7 +335,7 @@ TEST_F(HistoryCommand, RawLogsAloneAreAHistoryToo) {
   EXPECT_EQ(run(a).code, 0);
 }
 
-TEST_F(HistoryCommand, NoHistoryIsTold) {
+TEST_F(HistoryCommand, ReportsAMissingHistory) {
   HistoryArguments a;
   a.place = test::table_config();
   EXPECT_NE(run(a).problems.find("has no [history]"), std::string::npos);

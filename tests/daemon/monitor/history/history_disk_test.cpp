@@ -52,7 +52,7 @@ bool may_mount() {
   return child.wait() == 0;
 }
 
-TEST(HistoryDisk, AFullDiskIsAnAlarmAndNothingIsLostWhenThereIsRoomInTime) {
+TEST(HistoryDisk, AFullDiskRaisesAnAlarmAndLosesNothingIfFreedInTime) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   if (!may_mount()) GTEST_SKIP() << "a small file system cannot be mounted here";
   std::string error;
@@ -87,7 +87,8 @@ TEST(HistoryDisk, AFullDiskIsAnAlarmAndNothingIsLostWhenThereIsRoomInTime) {
   EXPECT_NE(bus.status.raw_trouble.find("No space left"), std::string::npos)
       << bus.status.raw_trouble;
   const std::int64_t estimates = bus.estimates;
-  EXPECT_TRUE(wait([&] { return bus.estimates > estimates + 400; }, kWell)) << "estimation goes on";
+  EXPECT_TRUE(wait([&] { return bus.estimates > estimates + 400; }, kWell))
+      << "estimation continues";
   EXPECT_EQ(bus.told("raw", 1), 1) << "alarmed once";
 
   const std::string inside = fmt::format("/proc/{}/root{}", daemon.pid(), disk);
@@ -100,7 +101,7 @@ TEST(HistoryDisk, AFullDiskIsAnAlarmAndNothingIsLostWhenThereIsRoomInTime) {
   EXPECT_TRUE(test::comes_true(
       [&] { return static_cast<std::int64_t>(test::raw_counts(inside + "/h").size()) >= samples; },
       std::chrono::seconds(5)))
-      << "what waited is not written";
+      << "waiting samples were not written";
   const std::string copy = directory.path("copy");
   std::filesystem::create_directory(copy);  // SQLite follows /proc/PID/root to this side's root
   for (const char* ending : {"", "-wal"})

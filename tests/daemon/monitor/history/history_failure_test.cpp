@@ -83,7 +83,7 @@ class HistoryFailure : public testing::Test {
   std::size_t main_windows_ = 0;
 };
 
-TEST_F(HistoryFailure, AHistoryChangesNoByteOfTheEstimates) {
+TEST_F(HistoryFailure, TheHistoryChangesNoByteOfTheEstimates) {
   {
     History history(config_);
     Live live(config_, &history);
@@ -95,7 +95,7 @@ TEST_F(HistoryFailure, AHistoryChangesNoByteOfTheEstimates) {
   EXPECT_EQ(test::raw_counts(config_.history->directory).size(), kSamples);
 }
 
-TEST_F(HistoryFailure, AFullDiskHarmsNothingAndIsGoneWhenThereIsRoomAgain) {
+TEST_F(HistoryFailure, RecoversFromAFullDisk) {
   {
     History history(config_);
     {
@@ -129,7 +129,7 @@ TEST_F(HistoryFailure, AFullDiskHarmsNothingAndIsGoneWhenThereIsRoomAgain) {
           return s.raw_trouble.empty() && s.summary_trouble.empty() && s.raw_queue_bytes == 0;
         },
         kSoon));
-    EXPECT_EQ(history.status().raw_dropped, 0) << "the queue held what the disk did not take";
+    EXPECT_EQ(history.status().raw_dropped, 0) << "the queue kept data that the disk refused";
     EXPECT_TRUE(monitor.update(6'000'000, history.status()).empty());
     const auto over = monitor.update(20'000'000, history.status());
     ASSERT_FALSE(over.empty());
@@ -138,7 +138,7 @@ TEST_F(HistoryFailure, AFullDiskHarmsNothingAndIsGoneWhenThereIsRoomAgain) {
   EXPECT_EQ(test::raw_counts(config_.history->directory).size(), 2 * kSamples);
 }
 
-TEST_F(HistoryFailure, WhatTheQueueDoesNotHoldIsCounted) {
+TEST_F(HistoryFailure, CountsDataThatTheQueueDrops) {
   fs::create_directories(config_.history->directory);
   test::write_file(raw_folder(config_.history->directory), "no folder");
   constexpr std::size_t kQueue = 20'000;
@@ -152,7 +152,7 @@ TEST_F(HistoryFailure, WhatTheQueueDoesNotHoldIsCounted) {
   EXPECT_LE(counters.queued, kQueue);
 }
 
-TEST_F(HistoryFailure, AFolderThatIsNotThereAtTheStartIsWaitedFor) {
+TEST_F(HistoryFailure, WaitsForAMissingFolder) {
   test::write_file(config_.history->directory, "a file where the folder should be");
   History history(config_);
   Live live(config_, &history);
@@ -175,7 +175,7 @@ TEST_F(HistoryFailure, AFolderThatIsNotThereAtTheStartIsWaitedFor) {
   EXPECT_EQ(history.status().raw_dropped, 0);
 }
 
-TEST_F(HistoryFailure, AFolderThatMayNotBeWrittenIsWaitedFor) {
+TEST_F(HistoryFailure, WaitsForAWritableFolder) {
   fs::create_directory_symlink("/proc/self",
                                config_.history->directory);  // even root cannot write there
   History history(config_);
@@ -187,7 +187,7 @@ TEST_F(HistoryFailure, AFolderThatMayNotBeWrittenIsWaitedFor) {
   EXPECT_TRUE(comes_true([&] { return history.status().raw_trouble.empty(); }, kSoon));
 }
 
-TEST_F(HistoryFailure, ADatabaseThatIsSlowOrBusyDelaysNobody) {
+TEST_F(HistoryFailure, ASlowOrBusyDatabaseDelaysNoEstimate) {
   {
     History history(config_);
     // While it is created, one of two programs that open it may be refused.
@@ -220,7 +220,7 @@ TEST_F(HistoryFailure, ADatabaseThatIsSlowOrBusyDelaysNobody) {
   EXPECT_EQ(windows.integer(0), static_cast<std::int64_t>(main_windows_));
 }
 
-TEST(HistoryMonitor, ASlowDiskThatLosesSamplesIsAnAlarmToo) {
+TEST(HistoryMonitor, RaisesAnAlarmForASlowDiskThatLosesSamples) {
   HistoryMonitor monitor;
   history_status_t s{};
   s.time_us = 5;

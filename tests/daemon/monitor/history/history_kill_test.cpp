@@ -82,7 +82,7 @@ std::map<std::int64_t, std::int64_t> committed(const std::string& directory, boo
   return out;
 }
 
-TEST(KillStorm, LosesASecondOfRawSamplesAtMostAndNothingCommitted) {
+TEST(KillStorm, LosesAtMostASecondOfRawSamplesAndNothingCommitted) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   const test::TemporaryDirectory directory;
   const std::string config = config_with_history(directory), history = directory.path("h");
@@ -132,7 +132,7 @@ TEST(KillStorm, LosesASecondOfRawSamplesAtMostAndNothingCommitted) {
       EXPECT_LE(windows, 101) << "kill " << kill << ": counted twice";
     EXPECT_GE(now.empty() ? 0 : now.rbegin()->first + kSecond_us,
               bus.committed_us / kSecond_us * kSecond_us)
-        << "kill " << kill << ": what was said to be committed is gone";
+        << "kill " << kill << ": a committed period is missing";
     before = now;
   }
   EXPECT_LE(worst_restart_s, kills() > kKills ? kLongestRestart_s : kLongestAmongOthers_s);

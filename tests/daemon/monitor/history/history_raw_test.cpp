@@ -53,7 +53,7 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-TEST(RawHistory, GivesBackEverySampleAcrossRotations) {
+TEST(RawHistory, ReadsBackEverySampleAcrossRotations) {
   const test::TemporaryDirectory directory;
   Config config = test::table_with_history(directory.path("h"));
   config.history->rotate_s = 2;
@@ -68,7 +68,7 @@ TEST(RawHistory, GivesBackEverySampleAcrossRotations) {
   EXPECT_EQ(count_of(part, 3 * kRate_hz * kAxes), 2000u);
 }
 
-TEST(RawHistory, RotatesBySizeAndNeverTakesANameTwice) {
+TEST(RawHistory, RotatesBySizeAndNeverReusesAName) {
   const test::TemporaryDirectory directory;
   Config config = test::table_with_history(directory.path("h"));
   config.history->rotate_mb = 0.02;
@@ -80,7 +80,7 @@ TEST(RawHistory, RotatesBySizeAndNeverTakesANameTwice) {
   EXPECT_EQ(test::raw_counts(config.history->directory).size(), 10'000u);
 }
 
-TEST(RawHistory, WhatWaitsForItsBlockToFillIsWrittenSoon) {
+TEST(RawHistory, WritesAnUnfinishedBlockSoon) {
   const test::TemporaryDirectory directory;
   const Config config = test::table_with_history(directory.path("h"));
   HistoryKeeper keeper(*config.history);
@@ -94,7 +94,7 @@ TEST(RawHistory, WhatWaitsForItsBlockToFillIsWrittenSoon) {
   raw.finish();
 }
 
-TEST(RawHistory, ALogThatGetsItsNextNameAfterItWasListedIsRead) {
+TEST(RawHistory, ReadsALogThatIsRenamedAfterListing) {
   const test::TemporaryDirectory directory;
   Config config = test::table_with_history(directory.path("h"));
   config.history->compress = false;
@@ -124,7 +124,7 @@ TEST(RawHistory, ALogThatGetsItsNextNameAfterItWasListedIsRead) {
   EXPECT_EQ(samples(listed()), kRate_hz * kAxes);
 }
 
-TEST(RawHistory, AStrayClockMakesNoFileOfItsOwn) {
+TEST(RawHistory, AStrayClockCreatesNoFile) {
   const test::TemporaryDirectory directory;
   const Config config = test::table_with_history(directory.path("h"));
   HistoryKeeper keeper(*config.history);
@@ -146,7 +146,7 @@ TEST(RawHistory, AStrayClockMakesNoFileOfItsOwn) {
   EXPECT_EQ(test::raw_counts(config.history->directory).size(), 1100u);
 }
 
-TEST(HistoryKeeper, CompressesWhatIsClosedAndReadsTheSame) {
+TEST(HistoryKeeper, CompressesClosedLogsWithoutLoss) {
   const test::TemporaryDirectory directory;
   Config config = test::table_with_history(directory.path("h"));
   config.history->rotate_s = 2;
@@ -176,7 +176,7 @@ std::string killed_log(const Config& config) {
   return partial;
 }
 
-TEST(RawLogCare, CutsOffTheEventThatWasBeingWrittenAndNothingElse) {
+TEST(RawLogCare, CutsOffOnlyTheIncompleteEvent) {
   const test::TemporaryDirectory directory;
   Config config = test::table_with_history(directory.path("h"));
   config.history->compress = false;
@@ -195,7 +195,7 @@ TEST(RawLogCare, CutsOffTheEventThatWasBeingWrittenAndNothingElse) {
   }
 }
 
-TEST(RawLogCare, LeavesALogAloneThatIsBeingWritten) {
+TEST(RawLogCare, LeavesAnOpenLogAlone) {
   const test::TemporaryDirectory directory;
   const Config config = test::table_with_history(directory.path("h"));
   HistoryKeeper keeper(*config.history);
@@ -208,7 +208,7 @@ TEST(RawLogCare, LeavesALogAloneThatIsBeingWritten) {
   raw.finish();
 }
 
-TEST(RawLogCare, PutsAsideWhatHoldsNothing) {
+TEST(RawLogCare, SetsEmptyLogsAside) {
   const test::TemporaryDirectory directory;
   const Config config = test::table_with_history(directory.path("h"));
   const std::string folder = raw_folder(config.history->directory);
@@ -220,7 +220,7 @@ TEST(RawLogCare, PutsAsideWhatHoldsNothing) {
   EXPECT_EQ(test::read_file(folder + "/20261122T000001Z.lcmlog.damaged"), std::string(100, 'x'));
 }
 
-TEST(RawLogCare, ACompressionThatIsStoppedLeavesTheLogAndNothingElse) {
+TEST(RawLogCare, AStoppedCompressionLeavesOnlyTheLog) {
   const test::TemporaryDirectory directory;
   Config config = test::table_with_history(directory.path("h"));
   config.history->compress = false;
@@ -234,7 +234,7 @@ TEST(RawLogCare, ACompressionThatIsStoppedLeavesTheLogAndNothingElse) {
   EXPECT_EQ(test::read_file(path), before);
 }
 
-TEST(RawLogCare, WhatAKilledCompressionLeftIsRemoved) {
+TEST(RawLogCare, RemovesLeftoversOfAKilledCompression) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("20261122T000000Z.lcmlog.zst.partial"), "half");
   test::write_file(directory.path("20261122T000000Z.lcmlog"), "whole");
@@ -266,7 +266,7 @@ TEST(Retention, RemovesTheOldestBySize) {
   EXPECT_EQ(after.back().path, before.back().path);
 }
 
-TEST(Retention, RemovesByAgeAndKeepsWhatShowsAnEventForEver) {
+TEST(Retention, RemovesByAgeButKeepsLogsOfEvents) {
   const test::TemporaryDirectory directory;
   Config config = ten_logs(directory.path("h"));
   SummaryStore store(*config.history);
@@ -299,7 +299,7 @@ TEST(Retention, RemovesByAgeAndKeepsWhatShowsAnEventForEver) {
   EXPECT_GE(kept.back().time_us, kStart_us + 4 * kSecond_us + 690'000);
 }
 
-TEST(Retention, RemovesNothingWhileTheEventsCannotBeRead) {
+TEST(Retention, RemovesNothingWhileEventsAreUnreadable) {
   const test::TemporaryDirectory directory;
   Config config = ten_logs(directory.path("h"));
   test::write_file(summary_file(config.history->directory), std::string(8192, 'x'));

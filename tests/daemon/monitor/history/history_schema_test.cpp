@@ -17,7 +17,7 @@ namespace history_schema_test {
 constexpr const char* kTwoSteps[] = {"CREATE TABLE a (x INTEGER)",
                                      "ALTER TABLE a ADD COLUMN y INTEGER NOT NULL DEFAULT 7"};
 
-TEST(Schema, AnOlderDatabaseIsUpgradedWithWhatIsInIt) {
+TEST(Schema, UpgradesAnOlderDatabaseWithItsContents) {
   const test::TemporaryDirectory directory;
   SqliteFile file;
   ASSERT_TRUE(file.open(directory.path("db")));
@@ -33,7 +33,7 @@ TEST(Schema, AnOlderDatabaseIsUpgradedWithWhatIsInIt) {
   EXPECT_EQ(row.integer(1), 7);
 }
 
-TEST(Schema, AStepThatFailsLeavesTheDatabaseAsItWas) {
+TEST(Schema, AFailedUpgradeLeavesTheDatabaseUnchanged) {
   const test::TemporaryDirectory directory;
   SqliteFile file;
   ASSERT_TRUE(file.open(directory.path("db")));
@@ -46,7 +46,7 @@ TEST(Schema, AStepThatFailsLeavesTheDatabaseAsItWas) {
   EXPECT_EQ(version_problem(file, std::span(kTwoSteps).first(1)), "");
 }
 
-TEST(Schema, ANewerDatabaseIsRefusedAndNotTouched) {
+TEST(Schema, RefusesANewerDatabaseUnchanged) {
   const test::TemporaryDirectory directory;
   HistorySettings s;
   s.directory = directory.path("h");

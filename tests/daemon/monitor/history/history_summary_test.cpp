@@ -54,7 +54,7 @@ void expect_summary(const Row& row, std::size_t p, std::int64_t from, std::int64
   EXPECT_EQ(row.box.outliers, expected.outliers);
 }
 
-TEST(SummaryStore, EveryPeriodIsWhatItsWindowsSay) {
+TEST(SummaryStore, SummarizesTheWindowsOfEveryPeriod) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);
@@ -74,7 +74,7 @@ TEST(SummaryStore, EveryPeriodIsWhatItsWindowsSay) {
   }
 }
 
-TEST(SummaryStore, AParameterThatIsNeverObservableHasNoNumbers) {
+TEST(SummaryStore, StoresNoNumbersForUnobservableParameters) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);
@@ -90,7 +90,7 @@ TEST(SummaryStore, AParameterThatIsNeverObservableHasNoNumbers) {
 }
 
 /// Windows from before the tuning of the filters: in the current period, and in a stored one.
-TEST(SummaryStore, ValuesThatComeLateAreInThePeriodsOfTheirWindows) {
+TEST(SummaryStore, PutsLateValuesIntoThePeriodsOfTheirWindows) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);
@@ -112,7 +112,7 @@ TEST(SummaryStore, ValuesThatComeLateAreInThePeriodsOfTheirWindows) {
   EXPECT_EQ(program.store().repeated(), 0);
 }
 
-TEST(SummaryStore, ValuesThatComeLateOfAPeriodThatIsNotThereAreLeftOut) {
+TEST(SummaryStore, IgnoresLateValuesOfAMissingPeriod) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);
@@ -122,7 +122,7 @@ TEST(SummaryStore, ValuesThatComeLateOfAPeriodThatIsNotThereAreLeftOut) {
   EXPECT_EQ(rows(s, "kx_1_y1", 1).size(), 1u);
 }
 
-TEST(SummaryStore, ARestartThatRepeatsWindowsCountsThemOnce) {
+TEST(SummaryStore, CountsRepeatedWindowsOnceAfterARestart) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   {
@@ -144,7 +144,7 @@ TEST(SummaryStore, ARestartThatRepeatsWindowsCountsThemOnce) {
   EXPECT_EQ(again.store().repeated(), 0);
 }
 
-TEST(SummaryStore, WhatWasSummarisedLongAgoIsNotTouchedWhenTheClockGoesBack) {
+TEST(SummaryStore, KeepsOldSummariesWhenTheClockGoesBack) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);
@@ -157,7 +157,7 @@ TEST(SummaryStore, WhatWasSummarisedLongAgoIsNotTouchedWhenTheClockGoesBack) {
   expect_summary(rows(s, "kx_1_y1", 1).at(20), 0, 2000, 2100);
 }
 
-TEST(SummaryStore, AnotherProgramCommitsNothingIntoClosedPeriods) {
+TEST(SummaryStore, AnotherProgramCannotChangeClosedPeriods) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   {
@@ -172,7 +172,7 @@ TEST(SummaryStore, AnotherProgramCommitsNothingIntoClosedPeriods) {
   expect_summary(rows(s, "kx_1_y1", 1).at(1), 0, 100, 200);
 }
 
-TEST(SummaryStore, TwoProgramsDoNotWriteOneHistory) {
+TEST(SummaryStore, RefusesASecondWriter) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   SummaryStore other(s);
@@ -183,7 +183,7 @@ TEST(SummaryStore, TwoProgramsDoNotWriteOneHistory) {
   EXPECT_EQ(other.open(), "");
 }
 
-TEST(SummaryStore, ValuesOfPeriodsThatAreOverDoNotPileUp) {
+TEST(SummaryStore, ForgetsValuesOfClosedPeriods) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);
@@ -195,7 +195,7 @@ TEST(SummaryStore, ValuesOfPeriodsThatAreOverDoNotPileUp) {
   EXPECT_LE(count.integer(0), 2 * 2 * 4);  // parameters, longest periods, shortest ones in each
 }
 
-TEST(SummaryStore, ChannelsAreCountedByTheDifferencesOfTheStatus) {
+TEST(SummaryStore, CountsChannelsByDifferencesOfStatus) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);
@@ -225,7 +225,7 @@ TEST(SummaryStore, ChannelsAreCountedByTheDifferencesOfTheStatus) {
   EXPECT_EQ(row.number(2), 1e-4);
 }
 
-TEST(SummaryStore, AnEventToldTwiceIsThereOnce) {
+TEST(SummaryStore, StoresARepeatedEventOnce) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);
@@ -250,7 +250,7 @@ TEST(SummaryStore, AnEventToldTwiceIsThereOnce) {
   EXPECT_EQ(count.text(1), e.message);
 }
 
-TEST(SummaryStore, PrunesTheShortestPeriodOnly) {
+TEST(SummaryStore, PrunesOnlyTheShortestPeriod) {
   const test::TemporaryDirectory directory;
   HistorySettings s = settings(directory);
   s.keep_summary_days = 1;
@@ -282,7 +282,7 @@ TEST(SummaryHistory, AnEventBeforeTheFirstWindowPrunesNothing) {
   EXPECT_EQ(rows(*config.history, "kx_1_y1", 1).size(), 10u);
 }
 
-TEST(SummaryStore, WithoutATimeNothingIsPruned) {
+TEST(SummaryStore, PrunesNothingWithoutATime) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
   Program program(s);

@@ -185,7 +185,7 @@ TEST_F(AttackedEstimation, TenThousandGarbageDatagramsASecondChangeNoBitOfAnEsti
   EXPECT_GT(attacker.sent(), 1000);
 }
 
-TEST_F(AttackedEstimation, ATwinOnAnotherSocketChangesNoBitOfAnEstimateAndIsAnEvent) {
+TEST_F(AttackedEstimation, ATwinOnAnotherSocketRaisesAnEventAndChangesNoBit) {
   const drivers::DatagramSender twin(kTestPort);
   play([&](const drivers::LogEvent& event) {
     if (event.channel != "ACCEL") return;

@@ -62,7 +62,7 @@ Collected run_live(const Config& config, const std::string& log) {
   return collected;
 }
 
-TEST(LiveEstimation, GivesTheBytesThatReplayInOnePassGives) {
+TEST(LiveEstimation, GivesTheBytesOfAReplayInOnePass) {
   const test::TemporaryDirectory directory;
   test::record_table_test(directory.path("rec.lcmlog"), 8);
   const Config config = table();
@@ -83,7 +83,7 @@ TEST(LiveEstimation, GivesTheBytesThatReplayInOnePassGives) {
   EXPECT_TRUE(live.estimates == replayed);
 }
 
-TEST(LiveEstimation, NeverStopsOnBadInputAndCountsIt) {
+TEST(LiveEstimation, CountsBadInputAndContinues) {
   const Config config = table();
   drivers::LcmProvider lcm("memq://");
   LiveEstimation live(config, lcm);
@@ -99,7 +99,7 @@ TEST(LiveEstimation, NeverStopsOnBadInputAndCountsIt) {
   live.finish();
 }
 
-TEST(LiveEstimation, TheConfigurationIsAboveAStrayChannelTable) {
+TEST(LiveEstimation, TheConfigurationOverridesAStrayChannelTable) {
   const Config config = table();
   drivers::LcmProvider lcm("memq://");
   LiveEstimation live(config, lcm);
@@ -130,7 +130,7 @@ TEST(SensorSeconds, TicksOnceASecondAndIgnoresAStrayClock) {
   EXPECT_EQ(seconds.newest_us(), 10'000'000);
 }
 
-TEST(SensorSeconds, FollowsWhenEverybodysClockJumps) {
+TEST(SensorSeconds, FollowsAJumpOfAllClocks) {
   SensorSeconds seconds;
   EXPECT_TRUE(seconds.passed(1'000'000'000));
   int ticks = 0;

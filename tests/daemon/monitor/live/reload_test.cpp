@@ -32,11 +32,11 @@ std::vector<ConfigChange> changes(const std::string& before, const std::string& 
   return changes_between(*parse_toml(before, problems), *parse_toml(after, problems));
 }
 
-TEST(ConfigChanges, LayoutCommentsAndOrderAreNone) {
+TEST(ConfigChanges, IgnoreLayoutCommentsAndOrder) {
   EXPECT_TRUE(changes("[a]\nx = 1\ny = [1, 2]\n", "# new\n[a]\ny = [1,2]\nx = 1.0\n").empty());
 }
 
-TEST(ConfigChanges, SayHowFarTheyReach) {
+TEST(ConfigChanges, StateTheirReloadClass) {
   const std::string before =
       "[structure]\nstories = 2\n[estimator]\nmin_snr = 10\n"
       "[[channel]]\nname = \"a\"\n[[channel]]\nname = \"b\"\nnoise_mps2_per_rthz = 1e-4\n";
@@ -58,7 +58,7 @@ TEST(ConfigChanges, SayHowFarTheyReach) {
   EXPECT_EQ(found[3].reach, Reach::settings);
 }
 
-TEST(ConfigChanges, WhoIsToldIsTakenWithoutARestart) {
+TEST(ConfigChanges, ApplyNotificationSettingsWithoutARestart) {
   const auto found = changes("", "[actions]\nwebhook = \"http://a\"\n");
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].reach, Reach::settings);
@@ -84,7 +84,7 @@ class Reloading : public testing::Test {
   Config config_;
 };
 
-TEST_F(Reloading, AWrongFileAnotherStructureAndNoFileAreRefused) {
+TEST_F(Reloading, RefusesAWrongFileAnotherStructureAndAMissingFile) {
   Reloader reloader(config_, test::kGoodConfig);
   std::optional<Reloader::Result> result;
   write(std::string(test::kGoodConfig) + "\n[estimator]\nmin_snr = \"many\"\n");
@@ -156,7 +156,7 @@ class ReloadedRun {
   std::int64_t lost_ = 0;
 };
 
-TEST_F(Reloading, SettingsThatDoNotTouchTheWindowChangeNoBitOfAnEstimate) {
+TEST_F(Reloading, SettingsOutsideTheWindowChangeNoBitOfAnEstimate) {
   const std::string log = directory_.path("rec.lcmlog");
   test::record_table_test(log, kSeconds);
   const ReloadedRun uncut("", Reach::settings, log);

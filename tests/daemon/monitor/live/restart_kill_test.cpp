@@ -28,7 +28,7 @@ constexpr auto kShakenBefore = 3s;
 constexpr auto kAway = 1s;  // a shorter absence is not reported
 constexpr int kSpeed = 2;
 
-TEST(RestartKill, TheReportSpansTheWholeEarthquakeAndSaysWhenNobodyListened) {
+TEST(RestartKill, TheReportCoversTheWholeEarthquakeAndNamesMissingTimes) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   const test::TemporaryDirectory directory;
   const std::string configs = std::string(FRAMEWATCH_SOURCE_DIR) + "/configs/";

@@ -228,7 +228,7 @@ class Restart : public testing::Test {
   inline static double last_peak_s_ = 0;
 };
 
-TEST_F(Restart, TheReportHasThePeaksThatTheStateLacks) {
+TEST_F(Restart, TheReportHasPeaksThatTheStateLacks) {
   const Reports whole = uninterrupted(), r = restarted("restarted", {});
   ASSERT_EQ(whole.json.size(), 1u);
   ASSERT_EQ(r.json.size(), 1u);
@@ -256,7 +256,7 @@ TEST_F(Restart, TheReportHasThePeaksThatTheStateLacks) {
   EXPECT_NE(r.events[0].message.find("were not heard"), std::string::npos) << r.events[0].message;
 }
 
-TEST_F(Restart, WithoutAStateTheStoredSamplesAreEnough) {
+TEST_F(Restart, StoredSamplesSufficeWithoutAState) {
   const Reports whole = uninterrupted(), r = restarted("stateless", {.state = false});
   ASSERT_EQ(whole.json.size(), 1u);
   ASSERT_EQ(r.json.size(), 1u);
@@ -266,7 +266,7 @@ TEST_F(Restart, WithoutAStateTheStoredSamplesAreEnough) {
   EXPECT_EQ(r.json[0]["unheard"][0]["why"], "restart");
 }
 
-TEST_F(Restart, WithoutAHistoryTheReportSaysThatSamplesAreLost) {
+TEST_F(Restart, TheReportSaysThatSamplesAreLostWithoutAHistory) {
   const Reports r = restarted("forgetful", {.history = false});
   ASSERT_EQ(r.json.size(), 1u);
   print("killed, with a state alone", r.json[0]);
@@ -276,7 +276,7 @@ TEST_F(Restart, WithoutAHistoryTheReportSaysThatSamplesAreLost) {
   EXPECT_NE(unheard["message"].get<std::string>().find("[history]"), std::string::npos) << unheard;
 }
 
-TEST_F(Restart, WithNothingStoredItSaysThatItCameUpLate) {
+TEST_F(Restart, TheReportSaysThatTheDaemonStartedLateWithoutStoredSamples) {
   const Reports r = restarted("nothing", {.state = false, .history = false});
   ASSERT_EQ(r.json.size(), 1u);
   const Json& unheard = r.json[0]["unheard"][0];
@@ -284,7 +284,7 @@ TEST_F(Restart, WithNothingStoredItSaysThatItCameUpLate) {
   EXPECT_EQ(unheard["message"].get<std::string>().find("Nobody listened before "), 0u) << unheard;
 }
 
-TEST_F(Restart, ALongAbsenceIsNoCalm) {
+TEST_F(Restart, ALongAbsenceDoesNotEndTheMotion) {
   // Longer than quiet_s: it is still the same motion, which ends only after a calm time with
   // samples.
   const Reports r = restarted("long", {.away_s = 12});

@@ -104,7 +104,7 @@ class Commands : public testing::Test {
   std::string user_;
 };
 
-TEST_F(Commands, AreAnsweredAndTheKernelSaysWhoseTheyAre) {
+TEST_F(Commands, AreAnsweredAndCarryTheUserOfTheKernel) {
   const auto socket = listen();
   ASSERT_EQ(socket->problem(), "");
   struct stat found {};
@@ -122,7 +122,7 @@ TEST_F(Commands, AreAnsweredAndTheKernelSaysWhoseTheyAre) {
   EXPECT_EQ(user_, user_name(::geteuid()));
 }
 
-TEST_F(Commands, AnotherUserIsNamed) {
+TEST_F(Commands, NameAnotherUser) {
   constexpr uid_t kNobody = 65534;
   const auto socket = listen();
   std::filesystem::permissions(directory_.path(""), std::filesystem::perms(0755));
@@ -137,14 +137,14 @@ TEST_F(Commands, AnotherUserIsNamed) {
   EXPECT_EQ(user_, user_name(kNobody));
 }
 
-TEST_F(Commands, WithoutADaemonThereIsASentence) {
+TEST_F(Commands, ReportAMissingDaemon) {
   const CommandAnswer answer = ask("YES");
   EXPECT_FALSE(answer.answered);
   EXPECT_NE(answer.problem.find("no framewatch run takes commands here"), std::string::npos);
   EXPECT_NE(answer.problem.find(path()), std::string::npos);
 }
 
-TEST_F(Commands, WhoMayNotIsToldWhichGroupMay) {
+TEST_F(Commands, TellAUserWithoutRightsWhichGroupHasThem) {
   const auto socket = listen();
   ::chmod(path().c_str(), 0);
   int ends[2];
@@ -171,7 +171,7 @@ TEST_F(Commands, WhoMayNotIsToldWhichGroupMay) {
   EXPECT_NE(problem.find("usermod -aG " + group), std::string::npos) << problem;
 }
 
-TEST_F(Commands, ADeadProcessSocketIsReplacedALivingOnesIsNot) {
+TEST_F(Commands, ReplaceASocketOnlyIfItsProcessIsDead) {
   ASSERT_EQ(prepare_command_directory(config_.commands.directory), "");
   {  // as a killed process leaves it
     const int file = ::socket(AF_UNIX, SOCK_SEQPACKET, 0);
@@ -203,7 +203,7 @@ TEST_F(Commands, ADeadProcessSocketIsReplacedALivingOnesIsNot) {
   EXPECT_EQ(second->problem(), "");
 }
 
-TEST_F(Commands, TwoPrefixesAreTwoSockets) {
+TEST_F(Commands, UseASocketPerPrefix) {
   const auto first = listen();
   config_.lcm.prefix = "../Q/";
   const auto second = listen();
@@ -212,7 +212,7 @@ TEST_F(Commands, TwoPrefixesAreTwoSockets) {
   EXPECT_NE(first->path(), second->path());
 }
 
-TEST_F(Commands, ADirectoryThatOthersRuleIsRefused) {
+TEST_F(Commands, RefuseADirectoryThatOthersMayWrite) {
   const std::string directory = config_.commands.directory;
   std::filesystem::create_directory(directory);
   ::chmod(directory.c_str(), 0777);
@@ -232,7 +232,7 @@ TEST_F(Commands, ADirectoryThatOthersRuleIsRefused) {
   EXPECT_NE(listen()->problem().find("107 bytes"), std::string::npos);
 }
 
-TEST_F(Commands, OurOwnDirectoryIsTheUnitsOrTheSessionsOrInTmp) {
+TEST_F(Commands, UseTheDirectoryOfUnitSessionOrTmp) {
   config_.commands.directory.clear();
   ::setenv("RUNTIME_DIRECTORY", "/run/a:/run/b", 1);
   EXPECT_EQ(command_directory(config_), "/run/a");
@@ -245,7 +245,7 @@ TEST_F(Commands, OurOwnDirectoryIsTheUnitsOrTheSessionsOrInTmp) {
   EXPECT_EQ(command_directories(config_).back(), "/run/framewatch");
 }
 
-TEST_F(Commands, ASilentConnectionDelaysNobodyAndIsEnded) {
+TEST_F(Commands, CloseASilentConnectionWithoutDelayingOthers) {
   const auto socket = listen();
   serve(*socket);
   const int silent = connect();
@@ -264,7 +264,7 @@ TEST_F(Commands, ASilentConnectionDelaysNobodyAndIsEnded) {
   EXPECT_LT(longest_us_, kLook_us);
 }
 
-TEST_F(Commands, AHundredSilentConnectionsDelayNobody) {
+TEST_F(Commands, ServeOthersBesideAHundredSilentConnections) {
   const auto socket = listen();
   serve(*socket);
   std::vector<int> silent;
@@ -283,7 +283,7 @@ TEST_F(Commands, AHundredSilentConnectionsDelayNobody) {
   EXPECT_LE(held, static_cast<int>(CommandSocket::kMaxConnections));
 }
 
-TEST_F(Commands, WhatIsNoCommandIsCountedAndLeft) {
+TEST_F(Commands, CountAndIgnoreMalformedCommands) {
   const auto socket = listen();
   serve(*socket);
   const std::vector<std::string> junk = {

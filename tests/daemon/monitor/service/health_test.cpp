@@ -69,12 +69,12 @@ std::string odd(const Heard& heard, const Config& config, std::int64_t now_us = 
   return found.size() == 1 ? found.front() : std::to_string(found.size()) + " oddities";
 }
 
-TEST(Health, AWellDaemonHasNothingOdd) {
+TEST(Health, ReportsNoProblemOfAHealthyDaemon) {
   const Config config{};
   EXPECT_EQ(odd(well(config), config), "0 oddities");
 }
 
-TEST(Health, SaysThatTheThermometerIsSilent) {
+TEST(Health, ReportsASilentThermometer) {
   Config config{};
   config.watch.emplace();
   Heard h = well(config);
@@ -87,7 +87,7 @@ TEST(Health, SaysThatTheThermometerIsSilent) {
   EXPECT_EQ(odd(h, config), "0 oddities");
 }
 
-TEST(Health, SaysThatTheHubIsSilent) {
+TEST(Health, ReportsASilentHub) {
   Config config{};
   Heard h = well(config);
   EXPECT_EQ(odd(h, config), "0 oddities");
@@ -108,7 +108,7 @@ TEST(Health, SaysThatTheHubIsSilent) {
             "the messages that wait for the hub cannot be read or written: disk I/O error");
 }
 
-TEST(Health, SaysWhatIsOdd) {
+TEST(Health, ReportsProblems) {
   const Config config{};
   Heard h = well(config);
   EXPECT_EQ(odd(h, config, kNow_us + 70 * kSecond_us), "no samples for 1 min 10 s");
@@ -182,14 +182,14 @@ TEST(Health, SaysWhatIsOdd) {
   EXPECT_EQ(odd(h, config), "0 oddities");
 }
 
-TEST(Health, SpansAreReadable) {
+TEST(Health, PrintsReadableDurations) {
   EXPECT_EQ(span_text(2.9), "2 s");
   EXPECT_EQ(span_text(310), "5 min 10 s");
   EXPECT_EQ(span_text(7260), "2 h 1 min");
   EXPECT_EQ(span_text(273600), "3 d 4 h");
 }
 
-TEST(StatusCommand, TellsWellFromNotWellFromNotThere) {
+TEST(StatusCommand, DistinguishesHealthyTroubledAndMissingDaemons) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::string error;
   if (!drivers::open_lcm(LcmSettings{}.url, {}, error)) GTEST_SKIP() << error;
@@ -221,7 +221,7 @@ TEST(StatusCommand, TellsWellFromNotWellFromNotThere) {
   EXPECT_EQ(daemon.stop(SIGTERM), 0);
 }
 
-TEST(StatusCommand, SaysWhatTheDaemonUsesWhenItsFileIsAnotherOneOrWrong) {
+TEST(StatusCommand, NamesTheConfigurationInUseIfTheFileChangedOrIsWrong) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::string error;
   if (!drivers::open_lcm(LcmSettings{}.url, {}, error)) GTEST_SKIP() << error;
@@ -252,7 +252,7 @@ TEST(StatusCommand, SaysWhatTheDaemonUsesWhenItsFileIsAnotherOneOrWrong) {
   EXPECT_EQ(daemon.stop(SIGTERM), 0);
 }
 
-TEST(UnitState, SaysWhatSystemdDoes) {
+TEST(UnitState, DescribesTheSystemdState) {
   EXPECT_EQ(unit_text({"active", "running", "success", 0}), "active (running)");
   EXPECT_EQ(unit_oddity({"active", "running", "success", 3}), "");
   const UnitState gone{"failed", "failed", "start-limit-hit", 15};
@@ -265,14 +265,14 @@ TEST(UnitState, SaysWhatSystemdDoes) {
   EXPECT_NE(unit_oddity({"failed", "failed", "exit-code", 0}).find("exit-code"), std::string::npos);
 }
 
-TEST(Selftest, FindsTheAnswerThatIsKnown) {
+TEST(Selftest, FindsTheKnownAnswer) {
   const MachineCheck check = check_estimate();
   EXPECT_EQ(check.name, "estimate");
   EXPECT_EQ(check.found.substr(0, 8), "8 frames") << check.found;
   EXPECT_EQ(check.remedy.find("wrongly"), std::string::npos) << check.found;
 }
 
-TEST(Selftest, SaysWhatToDoAboutTheRest) {
+TEST(Selftest, GivesAdviceForEveryFailure) {
   const test::TemporaryDirectory directory;
   EXPECT_TRUE(check_disk(directory.path("")).found.find("GB free") != std::string::npos);
   EXPECT_TRUE(directory.names().empty());

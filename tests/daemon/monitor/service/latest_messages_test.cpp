@@ -17,7 +17,7 @@ status_t status(std::int64_t windows) {
   return m;
 }
 
-TEST(LatestMessages, KeepTheLatestOfEachChannelAndReturnWhichOneChanged) {
+TEST(LatestMessages, KeepTheLatestOfEachChannelAndReturnTheChangedOne) {
   LatestMessages latest("A_");
   EXPECT_EQ(latest.update("A_STATUS", drivers::encoded(status(1))), DaemonMessage::status);
   EXPECT_EQ(latest.update("A_STATUS", drivers::encoded(status(2))), DaemonMessage::status);
@@ -31,7 +31,7 @@ TEST(LatestMessages, KeepTheLatestOfEachChannelAndReturnWhichOneChanged) {
   EXPECT_TRUE(latest.event);
 }
 
-TEST(LatestMessages, ForeignAndMalformedMessagesChangeNothing) {
+TEST(LatestMessages, IgnoreForeignAndMalformedMessages) {
   LatestMessages latest("A_");
   std::vector<std::uint8_t> payload = drivers::encoded(status(1));
   EXPECT_TRUE(latest.update("A_STATUS", payload));

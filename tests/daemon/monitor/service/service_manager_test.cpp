@@ -59,7 +59,7 @@ class Listener {
   int socket_;
 };
 
-TEST(ServiceManager, HearsEveryStepOfARun) {
+TEST(ServiceManager, IsNotifiedOfEveryStepOfARun) {
   const test::TemporaryDirectory directory;
   const std::string config = directory.path("b.toml");
   test::write_file(config, test::read_file(test::table_config()));
@@ -109,7 +109,7 @@ bool well_for(ProgressWatch& watch, std::int64_t& now_us, double seconds, const 
   return well;
 }
 
-TEST(ProgressWatch, IdleAndWorkingAreWellStuckIsNot) {
+TEST(ProgressWatch, FailsOnlyIfStuck) {
   ProgressWatch watch;
   std::int64_t now_us = 0, n = 0;
   const double longest_s = 1e-6 * ProgressWatch::kLongest_us;

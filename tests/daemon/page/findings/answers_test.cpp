@@ -51,7 +51,7 @@ class AnswersTest : public ::testing::Test {
   Known known_;
 };
 
-TEST_F(AnswersTest, AChangeSaysWhetherItLasts) {
+TEST_F(AnswersTest, SaysWhetherAChangeLasts) {
   event_t e = event_of("stiffness_change", "kx_1_y1", severity::alarm);
   e.message +=
       ", since noon" + kAfterStrongMotion +
@@ -74,12 +74,12 @@ TEST_F(AnswersTest, AQuietWholeBuildingNeedsNothing) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(answer(i).state, AnswerState::good) << i;
 }
 
-TEST_F(AnswersTest, NothingIsKnownBeforeSamplesCome) {
+TEST_F(AnswersTest, SaysNothingBeforeSamplesCome) {
   known_ = {};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(answer(i).state, AnswerState::wait) << said(i);
 }
 
-TEST_F(AnswersTest, AChangeHasTheNumberOfItsEventAndTheOrderOfTheQuestions) {
+TEST_F(AnswersTest, AChangeHasItsEventNumber) {
   find(event_of("stiffness_change", "kx_1_y2", severity::alarm), -14.83, 0.41);
   const Answer changed = answer(0);
   EXPECT_EQ(changed.question, "Is the building changed?");
@@ -92,7 +92,7 @@ TEST_F(AnswersTest, AChangeHasTheNumberOfItsEventAndTheOrderOfTheQuestions) {
   EXPECT_EQ(answer(3).state, AnswerState::bad);
 }
 
-TEST_F(AnswersTest, WhatIsAcknowledgedIsStillSoButNothingToDo) {
+TEST_F(AnswersTest, AnAcknowledgedEventStaysButAsksForNothing) {
   find(event_of("stiffness_change", "kx_1_y2", severity::alarm), -14.83, 0.41);
   known_.findings.back().acknowledged = true;
   known_.findings.back().who = "Ana";
@@ -103,7 +103,7 @@ TEST_F(AnswersTest, WhatIsAcknowledgedIsStillSoButNothingToDo) {
 }
 
 /// A gap alarm used to take the place of an unacknowledged damage.
-TEST_F(AnswersTest, AGapReplacesNoDamage) {
+TEST_F(AnswersTest, AGapDoesNotHideDamage) {
   find(event_of("stiffness_change", "kx_1_y2", severity::alarm), -14.83, 0.41);
   find(event_of("gap", "F1-Y1", severity::warning), 40);
   EXPECT_NE(said(0).find("14.8 %"), std::string::npos);
@@ -113,7 +113,7 @@ TEST_F(AnswersTest, AGapReplacesNoDamage) {
   EXPECT_NE(said(3).find("framewatch diagnose"), std::string::npos);
 }
 
-TEST_F(AnswersTest, ADeadSensorIsSaid) {
+TEST_F(AnswersTest, NamesADeadSensor) {
   find(event_of("channel_silent", "F1-Y1", severity::warning));
   EXPECT_TRUE(known_.findings.back().of_channel);
   EXPECT_EQ(answer(1).state, AnswerState::look);
@@ -122,7 +122,7 @@ TEST_F(AnswersTest, ADeadSensorIsSaid) {
   EXPECT_EQ(said(0).substr(0, 3), "No.");
 }
 
-TEST_F(AnswersTest, SilenceIsNoBelief) {
+TEST_F(AnswersTest, DoesNotTrustOldValues) {
   known_.silent_s = 75;
   EXPECT_EQ(said(1), "No: no samples for 1 min 15 s. The values shown are old.");
   EXPECT_NE(said(3).find("framewatch status"), std::string::npos);
@@ -131,7 +131,7 @@ TEST_F(AnswersTest, SilenceIsNoBelief) {
   EXPECT_NE(said(1).find("there are no estimates for 10 s"), std::string::npos);
 }
 
-TEST_F(AnswersTest, OfATallBuildingTheStoriesThatSwayedMostAreNamed) {
+TEST_F(AnswersTest, NamesTheStoriesOfATallBuildingThatSwayedMost) {
   constexpr int kStories = 12, kMax = 7;
   estimator::Structure& s = config_.pipeline.structure;
   s.stories = kStories;
@@ -151,7 +151,7 @@ TEST_F(AnswersTest, OfATallBuildingTheStoriesThatSwayedMostAreNamed) {
   EXPECT_EQ(told.more[5].text, "The other 7 stories swayed less.");
 }
 
-TEST_F(AnswersTest, AShakeIsSaidByStoryWithItsBaseShear) {
+TEST_F(AnswersTest, ReportsAShakeByStoryWithItsBaseShear) {
   Shake shake;
   shake.from_us = 1'000'000;
   shake.to_us = 9'000'000;
@@ -173,7 +173,7 @@ TEST_F(AnswersTest, AShakeIsSaidByStoryWithItsBaseShear) {
             "A shake: how far its stories swayed is not known; the force at the base (s");
 }
 
-TEST_F(AnswersTest, AShakeIsJudgedByItsReport) {
+TEST_F(AnswersTest, JudgesAShakeByItsReport) {
   Shake shake;
   shake.from_us = 1'000'000;
   shake.to_us = 9'000'000;
@@ -187,14 +187,14 @@ TEST_F(AnswersTest, AShakeIsJudgedByItsReport) {
   EXPECT_EQ(answer(2).more.front().report, "event-20261124T000000Z");
   known_.report->color = EventColor::green;
   EXPECT_EQ(answer(2).state, AnswerState::good);
-  known_.newest = known_.strongest = nullptr;  // the page's server was started anew
+  known_.newest = known_.strongest = nullptr;  // the page's server was restarted
   EXPECT_EQ(answer(2).more.front().text,
             "The last strong motion was judged green: story 1 drifted by 2 %.");
   EXPECT_EQ(answer(2).more.front().since_us, 2'000'000);
   EXPECT_EQ(answer(2).more.front().report, "event-20261124T000000Z");
 }
 
-TEST_F(AnswersTest, StrongMotionThatIsNotGreenIsToBeLookedAt) {
+TEST_F(AnswersTest, AsksForInspectionUnlessTheReportIsGreen) {
   event_t e = event_of("strong_motion", "story 1", severity::alarm);
   e.message = "after strong motion: red, story 1 drifted by 2 %; report event-x.html";
   find(e);
@@ -204,7 +204,7 @@ TEST_F(AnswersTest, StrongMotionThatIsNotGreenIsToBeLookedAt) {
   EXPECT_EQ(said(1).substr(0, 4), "Yes.");
 }
 
-TEST(FindingWords, ForcesAndPercentsAreAsAnEngineerWritesThem) {
+TEST(FindingWords, WriteForcesAndPercentsLikeAnEngineer) {
   EXPECT_EQ(force_words(999.7), "1 kN");
   EXPECT_EQ(force_words(1.234e7), "12.3 MN");
   EXPECT_EQ(percent_words(0.1483, 0.0041), "14.8 %");
@@ -212,7 +212,7 @@ TEST(FindingWords, ForcesAndPercentsAreAsAnEngineerWritesThem) {
   EXPECT_EQ(percent_words(0.0823, 0.0003), "8.23 %");
 }
 
-TEST(ModelFit, SaysWhenMostOfTheMotionIsUnexplainedAndWhenItIsNoMore) {
+TEST(ModelFit, ReportsWhenMostOfTheMotionIsUnexplainedUntilItEnds) {
   ModelFit fit;
   window_estimate_t e{};
   e.status = 1;
@@ -228,12 +228,12 @@ TEST(ModelFit, SaysWhenMostOfTheMotionIsUnexplainedAndWhenItIsNoMore) {
   last(0.05, 30);
   EXPECT_FALSE(fit.finding());
   EXPECT_NEAR(fit.residual().value_or(0), 0.05, 1e-3);
-  last(0.9, 3);  // a moment is none
+  last(0.9, 3);  // a moment is not silence
   EXPECT_FALSE(fit.finding());
   last(0.8, 30);
   ASSERT_TRUE(fit.finding());
   EXPECT_NE(fit.finding()->text.find("does not fit"), std::string::npos);
-  e.reason = {2};  // what shows nothing says nothing
+  e.reason = {2};  // unobservable elements are not mentioned
   last(0.0, 100);
   EXPECT_TRUE(fit.finding());
   e.reason = {0};

@@ -36,7 +36,7 @@ class ShakingTest : public ::testing::Test {
     for (double& accel : set.accel) accel += kOffset_mps2;
     return set;
   }
-  /// Swells within some seconds, as motion does.
+  /// Grows within some seconds, like real motion.
   static double size_at(double t) {
     return 0.25 * (1 + std::tanh((t - kFrom_s) / kSwell_s)) *
            (1 + std::tanh((kTo_s - t) / kSwell_s));
@@ -53,7 +53,7 @@ class ShakingTest : public ::testing::Test {
   Shaking shaking_;
 };
 
-TEST_F(ShakingTest, SaysHowFarEachStoryDriftedAndWhatTheBaseBore) {
+TEST_F(ShakingTest, ReportsDriftOfEachStoryAndBaseShear) {
   for (std::int64_t i = 0; i < std::llround(kEnd_s * kRate_hz); ++i)
     shaking_.push(at(i, size_at(static_cast<double>(i) / kRate_hz)));
   const Shake* shake = shaking_.newest();
@@ -81,7 +81,7 @@ TEST_F(ShakingTest, IsExactInAMotionThatSwellsSlowly) {
   EXPECT_NEAR(accel_of(*shake, 1), kDrift_m * w * w, kGround_mps2);
 }
 
-TEST_F(ShakingTest, RestIsNoShakeAndALostSensorGivesNoNumber) {
+TEST_F(ShakingTest, ReportsNoShakeAtRestAndNoNumberForALostSensor) {
   for (std::int64_t i = 0; i < 3000; ++i) shaking_.push(at(i, 0));
   EXPECT_EQ(shaking_.newest(), nullptr);
   EXPECT_GT(shaking_.first_us(), 0);
@@ -96,7 +96,7 @@ TEST_F(ShakingTest, RestIsNoShakeAndALostSensorGivesNoNumber) {
   EXPECT_FALSE(shake->over);
   EXPECT_TRUE(std::isnan(shake->peak.base_shear_n[0]));
   EXPECT_GT(shake->peak.base_shear_n[1], 0);
-  EXPECT_EQ(story_of(*shake).frame, 2);  // x1, the only one that can be measured and moves
+  EXPECT_EQ(story_of(*shake).frame, 2);  // x1, the only measured frame that moves
 }
 
 TEST_F(ShakingTest, KeepsTheStrongestBesideTheNewest) {

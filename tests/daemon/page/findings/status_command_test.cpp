@@ -23,7 +23,7 @@ namespace status_command_test {
 
 using namespace std::chrono_literals;
 
-/// A daemon's report as anybody on the bus may send it.
+/// Returns a daemon's report that any process on the bus may have sent.
 service_t forged() {
   service_t s{};
   s.time_us = s.started_us = host_clock_us();
@@ -39,7 +39,7 @@ service_t forged() {
   return s;
 }
 
-TEST(Status, WhatIsHeardReachesNoTerminalRaw) {
+TEST(Status, PrintsNoForeignBytesToTheTerminal) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::atomic<bool> stop = false;
   std::thread sender([&] {

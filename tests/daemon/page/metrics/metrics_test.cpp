@@ -67,7 +67,7 @@ void expect_line(const std::string& text, const std::string& line) {
   EXPECT_NE(("\n" + text).find("\n" + line + "\n"), std::string::npos) << line << "\nin\n" << text;
 }
 
-TEST(Metrics, AreUpOnlyWhileTheDaemonIsHeardOf) {
+TEST(Metrics, AreUpOnlyWhileTheDaemonIsHeard) {
   const Config config{};
   Metrics metrics(config);
   expect_line(metrics.text(0, {}), "framewatch_up 0");
@@ -87,7 +87,7 @@ TEST(Metrics, AreUpOnlyWhileTheDaemonIsHeardOf) {
   EXPECT_EQ(down.find("framewatch_starts_total"), std::string::npos);
 }
 
-TEST(Metrics, HistogramsAddUpLabelsAreEscapedAndWhatNeverCameIsLeftOut) {
+TEST(Metrics, AddUpHistogramsEscapeLabelsAndOmitMissingValues) {
   const Config config{};
   Metrics metrics(config);
   give(metrics, "FRAMEWATCH_SERVICE", service(), 0);
@@ -103,7 +103,7 @@ TEST(Metrics, HistogramsAddUpLabelsAreEscapedAndWhatNeverCameIsLeftOut) {
   expect_line(text, R"(framewatch_events_raised{kind="two_senders",severity="alarm"} 0)");
 }
 
-TEST(Metrics, ForeignBytesInALabelAreText) {
+TEST(Metrics, EscapeForeignBytesInLabels) {
   const Config config{};
   Metrics metrics(config);
   service_t m = service();
@@ -115,7 +115,7 @@ TEST(Metrics, ForeignBytesInALabelAreText) {
   EXPECT_EQ(text.find('\xff'), std::string::npos);
 }
 
-TEST(Metrics, AValueThatTheWindowDoesNotShowIsLeftOutAndSaidToBe) {
+TEST(Metrics, OmitAndReportUnobservableValues) {
   const Config config{};
   Metrics metrics(config);
   parameter_table_t table{};
@@ -144,12 +144,12 @@ TEST(Metrics, AValueThatTheWindowDoesNotShowIsLeftOutAndSaidToBe) {
   expect_line(text, "framewatch_parameter_valid" + panel + "0");
   EXPECT_EQ(text.find("panel_stiffness_newtons_per_radian_meter{"), std::string::npos);
   expect_line(text, "framewatch_window_valid 1");
-  // A quiet estimator's last window is not told for ever.
+  // The last window of a silent estimator must not stay forever.
   give(metrics, "FRAMEWATCH_SERVICE", service(), 9 * kSecond_us);
   EXPECT_EQ(metrics.text(9 * kSecond_us, {}).find("framewatch_window_valid"), std::string::npos);
 }
 
-TEST(Metrics, SayWhatChangesAreJudgedAgainst) {
+TEST(Metrics, GiveTheBaseline) {
   const Config config{};
   Metrics metrics(config);
   parameter_table_t table{};
@@ -185,7 +185,7 @@ TEST(Metrics, SayWhatChangesAreJudgedAgainst) {
   EXPECT_EQ(text.find("framewatch_temperature_celsius "), std::string::npos);
 }
 
-TEST(Metrics, SayWhatTheDiskDoesNotTake) {
+TEST(Metrics, CountDataThatTheDiskRefuses) {
   const Config config{};
   Metrics metrics(config);
   history_status_t history{};
@@ -200,7 +200,7 @@ TEST(Metrics, SayWhatTheDiskDoesNotTake) {
   EXPECT_EQ(text.find("history_disk_free_bytes"), std::string::npos);
 }
 
-TEST(Metrics, SayWhatWaitsForTheHub) {
+TEST(Metrics, CountMessagesThatWaitForTheHub) {
   Config config{};
   config.fleet.emplace();
   Metrics metrics(config);
@@ -217,12 +217,12 @@ TEST(Metrics, SayWhatWaitsForTheHub) {
   expect_line(text, "framewatch_uplink_acknowledged_timestamp_seconds 1700000000");
   expect_line(text, R"(framewatch_uplink_waiting{kind="event"} 3)");
   expect_line(text, "framewatch_uplink_trouble 1");
-  // An uplink that is gone does not look well because the daemon lives.
+  // A missing uplink must not look healthy because the daemon runs.
   give(metrics, "FRAMEWATCH_SERVICE", service_t{}, Metrics::kFresh_us + 1);
   expect_line(metrics.text(Metrics::kFresh_us + 1, {}), "framewatch_uplink_up 0");
 }
 
-TEST(Metrics, SayWhetherPeopleAreTold) {
+TEST(Metrics, CountFailedNotifications) {
   const Config config{};
   Metrics metrics(config);
   action_status_t actions{};
@@ -241,7 +241,7 @@ TEST(Metrics, SayWhetherPeopleAreTold) {
   expect_line(text, R"(framewatch_action_trouble{way="webhook"} 1)");
 }
 
-TEST(Metrics, ForeignAndDamagedMessagesChangeNothing) {
+TEST(Metrics, IgnoreForeignAndDamagedMessages) {
   const Config config{};
   Metrics metrics(config);
   metrics.message("FRAMEWATCH_SERVICE", "garbage", 7, 0);
@@ -251,7 +251,7 @@ TEST(Metrics, ForeignAndDamagedMessagesChangeNothing) {
   expect_line(metrics.text(0, {}), "framewatch_up 0");
 }
 
-TEST(RaisedEvents, FollowWhatIsRaisedChangedAndCleared) {
+TEST(RaisedEvents, FollowRaisedChangedAndClearedEvents) {
   RaisedEvents raised;
   event_t e{};
   for (e.id = 1; e.id <= 3; ++e.id) {
@@ -279,7 +279,7 @@ TEST(RaisedEvents, FollowWhatIsRaisedChangedAndCleared) {
   EXPECT_EQ(back.all()[1].id, 3);
 }
 
-TEST(Metrics, HaveTheVerdictOfTheNewestReportAfterStrongMotion) {
+TEST(Metrics, GiveTheVerdictOfTheNewestReport) {
   const test::TemporaryDirectory directory;
   Config config{};
   EXPECT_EQ(Metrics(config).text(0, {}).find("event_report"), std::string::npos);
@@ -298,7 +298,7 @@ TEST(Metrics, HaveTheVerdictOfTheNewestReportAfterStrongMotion) {
   expect_line(red, "framewatch_event_report_timestamp_seconds 9");
 }
 
-TEST(DurationCounts, PutsEveryDurationWhereItBelongs) {
+TEST(DurationCounts, PutsEveryDurationIntoItsBin) {
   DurationCounts counts;
   for (const double s : {0.0, 1e-5, 1.1e-5, 0.02, 1.0, 1.5, 1e9}) counts.add(s);
   EXPECT_EQ(counts.counts().front(), 2);
@@ -308,7 +308,7 @@ TEST(DurationCounts, PutsEveryDurationWhereItBelongs) {
   EXPECT_EQ(counts.counts().back(), 2);
 }
 
-TEST(StartCount, TellsStartsAfterACleanStopFromTheOthers) {
+TEST(StartCount, CountsStartsAfterACleanStopApart) {
   const test::TemporaryDirectory directory;
   const std::string state = directory.path("state");
   std::string problem;

@@ -14,7 +14,7 @@ std::string all(const EventRing& ring, EventRing::Cursor& cursor, std::size_t st
   return out;
 }
 
-TEST(EventRing, EveryViewerReadsEverythingInItsOwnPieces) {
+TEST(EventRing, EveryViewerReadsEverythingAtItsOwnPace) {
   EventRing ring(4);
   EventRing::Cursor a = ring.join("first\n\n"), b = ring.join("");
   std::string whole_a, whole_b, expected;
@@ -29,7 +29,7 @@ TEST(EventRing, EveryViewerReadsEverythingInItsOwnPieces) {
   EXPECT_EQ(a.dropped, 0u);
 }
 
-TEST(EventRing, ASlowViewerIsToldWhatItLost) {
+TEST(EventRing, TellsASlowViewerWhatItLost) {
   EventRing ring(4);
   EventRing::Cursor slow = ring.join("");
   ring.push("n", "0");
@@ -37,7 +37,7 @@ TEST(EventRing, ASlowViewerIsToldWhatItLost) {
   ASSERT_EQ(ring.read(slow, begun, sizeof begun), sizeof begun);
   for (int i = 1; i < 100; ++i) ring.push("n", std::to_string(i));
   const std::string rest = all(ring, slow, 64);
-  // What was begun is finished; then comes how many are gone, then the newest.
+  // The viewer gets the rest of the current event, the number of lost ones, then the newest.
   EXPECT_EQ(rest,
             ": n\ndata: 0\n\nevent: dropped\ndata: {\"events\":98}\n\nevent: n\ndata: 99\n\n");
   EXPECT_EQ(slow.dropped, 98u);

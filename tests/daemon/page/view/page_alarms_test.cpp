@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page shows the events that `framewatch run` says are raised, and its own.
+// The page shows the events that `framewatch run` raises, and those of the page itself.
 #include "daemon/page/view/page_alarms.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ service_t report(const std::vector<std::int64_t>& ids) {
   return s;
 }
 
-/// Everything was acknowledged at a time of the host's clock; besides, these events of `run`.
+/// Acknowledges everything at a time of the host's clock, and these events of `run`.
 acknowledged_t all_at(std::int64_t time_us, const std::vector<std::int64_t>& ids) {
   acknowledged_t out{};
   for (const std::int64_t id : ids) add_acknowledged(out, event(id), {time_us, "me", ""});
@@ -65,12 +65,12 @@ class PageAlarmsTest : public testing::Test {
   using Ids = std::vector<std::int64_t>;
 };
 
-TEST_F(PageAlarmsTest, WhatRunNoLongerSaysIsOver) {
+TEST_F(PageAlarmsTest, ClosesEventsThatRunNoLongerRaises) {
   (void)alarms_.note(event(1));
   (void)alarms_.note(event(2));
   EXPECT_EQ(alarms_.still_raised(report({1, 2})).size(), 0u);
   EXPECT_EQ(shown(), (Ids{1, 2}));
-  // It was started anew with a state from before the second event.
+  // `run` restarted with a state from before the second event.
   const std::vector<std::string> news = alarms_.still_raised(report({1, 3}));
   EXPECT_EQ(news.size(), 2u);
   EXPECT_EQ(shown(), (Ids{1, 3}));
@@ -78,18 +78,18 @@ TEST_F(PageAlarmsTest, WhatRunNoLongerSaysIsOver) {
   EXPECT_EQ(alarms_.find(2)->state, event_state::cleared);
   EXPECT_NE(alarms_.find(2)->message.find("no longer reports"), std::string::npos);
   EXPECT_EQ(alarms_.still_raised(report({1, 3})).size(), 0u);
-  // It finds it again.
+  // `run` raises it again.
   (void)alarms_.note(event(2));
   EXPECT_EQ(shown(), (Ids{1, 2, 3}));
 }
 
-TEST_F(PageAlarmsTest, WhatThePageFoundItselfStays) {
+TEST_F(PageAlarmsTest, KeepsEventsThatThePageFound) {
   (void)alarms_.note_own(event(7, "stiffness_change"));
   EXPECT_EQ(alarms_.still_raised(report({})).size(), 0u);
   EXPECT_EQ(shown(), Ids{7});
 }
 
-TEST_F(PageAlarmsTest, AcknowledgeAllReachesEverythingThatIsShown) {
+TEST_F(PageAlarmsTest, AcknowledgeAllCoversEveryShownEvent) {
   (void)alarms_.note(event(1));
   (void)alarms_.note_own(event(7, "stiffness_change"));
   (void)alarms_.acknowledged(all_at(0, {}));
@@ -97,7 +97,7 @@ TEST_F(PageAlarmsTest, AcknowledgeAllReachesEverythingThatIsShown) {
   EXPECT_EQ(alarms_.acknowledged(all_at(5, {1})).size(), 2u);
   EXPECT_EQ(open(), 0u);
   EXPECT_EQ(alarms_.findings(config_)[1].who, "me");
-  // What comes later is not.
+  // Later events are not acknowledged.
   (void)alarms_.note_own(event(8, "stiffness_change"));
   (void)alarms_.acknowledged(all_at(5, {1, 2}));
   EXPECT_EQ(open(), 1u);
@@ -105,7 +105,7 @@ TEST_F(PageAlarmsTest, AcknowledgeAllReachesEverythingThatIsShown) {
   EXPECT_EQ(open(), 0u);
 }
 
-TEST_F(PageAlarmsTest, WhatWasAcknowledgedBeforeThePageListenedIsNotItsOwn) {
+TEST_F(PageAlarmsTest, AnEarlierAcknowledgementDoesNotCoverThePagesOwnEvents) {
   (void)alarms_.note_own(event(7, "stiffness_change"));
   (void)alarms_.acknowledged(all_at(5, {}));
   EXPECT_EQ(open(), 1u);

@@ -26,13 +26,13 @@ TEST(BuildingJson, NamesTheStoriesOfGroups) {
   EXPECT_NEAR(first["design"].get<double>(), 1111e6 / 5, 3e6);
 }
 
-TEST(BuildingJson, OfEveryStoryHasNoGroups) {
+TEST(BuildingJson, HasNoGroupsIfEveryStoryIsMeasured) {
   const auto building = building_of(demo_scenario());
   EXPECT_EQ(building["grouped"], false);
   for (const auto& p : building["parameters"]) EXPECT_EQ(p["story"], p["last_story"]);
 }
 
-TEST(BuildingJson, SaysWhereChannelsAreThatRideOnNoFrame) {
+TEST(BuildingJson, PlacesChannelsThatRideOnNoFrame) {
   Scenario scenario = tall_demo_scenario();
   scenario.config.pipeline.axes[0].plan = estimator::PlanPlace{3, 4, 0};
   const auto building = building_of(scenario);

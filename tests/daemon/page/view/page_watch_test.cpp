@@ -25,7 +25,7 @@ constexpr double kSecondsToTell = 4;  // from the drop to the event
 constexpr double kStep_s = 0.1, kDropAt_s = 30, kBackAt_s = 90, kEnd_s = 150, kDrop_ratio = 0.15;
 constexpr std::size_t kDropped = 1;
 
-/// Share of a window that ends at `end_s` in which the frame is softer.
+/// Returns the share of a window ending at `end_s` in which the frame is softer.
 double softer_share(double end_s, double length_s) {
   const double from = std::max(end_s - length_s, kDropAt_s), to = std::min(end_s, kBackAt_s);
   return std::max(0.0, to - from) / length_s;
@@ -49,7 +49,7 @@ window_estimate_t estimate_at(double end_s, double length_s, const std::vector<d
 
 class PageWatchTest : public ::testing::Test {
  protected:
-  /// Lengths of the windows that the configuration has, the main one first.
+  /// Returns the configured lengths of the windows, the main one first.
   std::vector<double> lengths() const {
     std::vector<double> out{config_.pipeline.options.window_s};
     for (const double s : config_.pipeline.options.other_windows_s) out.push_back(s);
@@ -65,7 +65,7 @@ class PageWatchTest : public ::testing::Test {
   Config config_ = test::good(test::kGoodConfig);
 };
 
-TEST_F(PageWatchTest, NamesTheFrameThatDroppedAndWhenItIsBack) {
+TEST_F(PageWatchTest, NamesTheFrameThatLostStiffnessUntilItReturns) {
   PageWatch watch(config_, 7);
   std::vector<event_t> events;
   for (double t = 10; t < kEnd_s; t += kStep_s)
@@ -84,7 +84,7 @@ TEST_F(PageWatchTest, NamesTheFrameThatDroppedAndWhenItIsBack) {
     EXPECT_EQ(e.place, table()[kDropped].name);
     EXPECT_EQ(e.kind, "stiffness_change");
     EXPECT_EQ(e.unit, "%");
-    // Once it is back, longer windows may still say so for a while, with an alarm of their own.
+    // After its return, longer windows may still raise an alarm for a while.
     if (static_cast<double>(e.time_us) < 1e6 * kBackAt_s) {
       EXPECT_EQ(e.id, 7);
       if (std::isfinite(e.value)) newest_value = e.value / 100;
@@ -99,7 +99,7 @@ TEST_F(PageWatchTest, NamesTheFrameThatDroppedAndWhenItIsBack) {
   EXPECT_NE(sized->message.find(" of its stiffness, give or take "), std::string::npos);
   for (const event_t* e : {&events.front(), &*sized}) {
     std::string found = finding_of(*e, config_).text;
-    found.pop_back();  // the sentence goes on
+    found.pop_back();  // the sentence continues
     EXPECT_EQ(e->message.substr(0, found.size() + 8), found + ", since ");
   }
   EXPECT_EQ(events.back().state, event_state::cleared);
@@ -123,7 +123,7 @@ TEST_F(PageWatchTest, NoiseAndSilenceRaiseNothing) {
   EXPECT_NEAR(watch.baseline()[0], 20e3, 100);
 }
 
-TEST_F(PageWatchTest, ABaselineIsOfStiffnessAloneAndCanBeRenewed) {
+TEST_F(PageWatchTest, TheBaselineHoldsOnlyStiffnessAndCanBeRenewed) {
   PageWatch watch(config_, 1);
   EXPECT_TRUE(std::isnan(watch.baseline()[0]));
   const auto learn = [&](double from_s, double scale) {
@@ -149,7 +149,7 @@ TEST_F(PageWatchTest, ABaselineIsOfStiffnessAloneAndCanBeRenewed) {
   EXPECT_GT(again.front().id, softer.front().id);
 }
 
-TEST_F(PageWatchTest, EstimatesOfAnotherBuildingAreIgnored) {
+TEST_F(PageWatchTest, IgnoresEstimatesOfAnotherBuilding) {
   PageWatch watch(config_, 1);
   EXPECT_TRUE(watch.observe(0, estimate_at(10, 5, {1, 2}, 0.005)).empty());
 }

@@ -26,14 +26,14 @@ namespace stored_history_test {
 using nlohmann::json;
 
 // Limits.
-constexpr double kLost = 0.01;  // of the motion: what was not yet on the disk, and the mean's error
+constexpr double kLost = 0.01;  // of the motion: samples not yet on the disk, and the mean's error
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 constexpr std::int64_t kAge_s = 3600;
 constexpr int kRate_hz = 100, kSeconds = 60,
-              kSeen_s = 40;  // kSeen_s: then a parameter is not shown
+              kSeen_s = 40;  // kSeen_s: after that, a parameter is not shown
 
-/// A minute of the table, its base moving, and what `framewatch run` keeps of it.
+/// A minute of the table on a moving base, as `framewatch run` stores it.
 class StoredHistoryTest : public testing::Test {
  protected:
   StoredHistoryTest() : config_(test::table_with_history(directory_.path("h"))) {
@@ -88,7 +88,7 @@ class StoredHistoryTest : public testing::Test {
     EXPECT_TRUE(notes.empty()) << notes.front();
     for (int flush = 0; flush < 20; ++flush) view.flush();  // a second
   }
-  /// What a viewer gets who joins now.
+  /// Returns the data that a viewer receives who joins now.
   static std::string joined(LiveView& view) {
     EventRing::Cursor cursor = view.join();
     std::string out(1 << 20, '\0');
@@ -108,7 +108,7 @@ class StoredHistoryTest : public testing::Test {
   Config config_;
 };
 
-TEST_F(StoredHistoryTest, APageThatWasStartedAnewHasWhatWasBefore) {
+TEST_F(StoredHistoryTest, ARestartedPageShowsEarlierHistory) {
   LiveView page = view();
   restore(page);
   const json history = json::parse(page.history_json());
@@ -133,7 +133,7 @@ TEST_F(StoredHistoryTest, APageThatWasStartedAnewHasWhatWasBefore) {
   EXPECT_NE(seen.find("it changed"), std::string::npos);
 }
 
-TEST_F(StoredHistoryTest, SensorsWhoseClockBeganAnewAreSeen) {
+TEST_F(StoredHistoryTest, ShowsSensorsWhoseClockWasReset) {
   LiveView page = view();
   restore(page);
   accel_t sample{};
@@ -149,7 +149,7 @@ TEST_F(StoredHistoryTest, SensorsWhoseClockBeganAnewAreSeen) {
   EXPECT_LT(json::parse(page.history_json())["silent_s"].get<double>(), 2);
 }
 
-TEST_F(StoredHistoryTest, PeaksAreThoseOfTheStoredMotion) {
+TEST_F(StoredHistoryTest, GivesThePeaksOfTheStoredMotion) {
   std::vector<std::string> notes;
   const StoredHistory stored = stored_history(config_, notes);
   const auto all = static_cast<double>(config_.pipeline.axes.size() * kRate_hz * kSeconds);
@@ -157,7 +157,7 @@ TEST_F(StoredHistoryTest, PeaksAreThoseOfTheStoredMotion) {
   EXPECT_EQ(stored.events.size(), 1u);
 }
 
-TEST_F(StoredHistoryTest, WhatRunNoLongerSaysIsRaisedIsOver) {
+TEST_F(StoredHistoryTest, ClosesEventsThatRunNoLongerRaises) {
   LiveView page = view();
   restore(page);
   service_t service{};
@@ -168,7 +168,7 @@ TEST_F(StoredHistoryTest, WhatRunNoLongerSaysIsRaisedIsOver) {
   EXPECT_TRUE(event_of(joined(page), "answers")["findings"].empty());
 }
 
-TEST_F(StoredHistoryTest, ADatabaseThatIsNoneIsSaidAndHarmless) {
+TEST_F(StoredHistoryTest, ReportsAndSurvivesAForeignDatabase) {
   test::write_file(summary_file(config_.history->directory), "no database at all, but long enough");
   std::vector<std::string> notes;
   const StoredHistory stored = stored_history(config_, notes);

@@ -46,7 +46,7 @@ window_estimate_t estimate_at(double end_s, std::vector<double> value, double re
   return e;
 }
 
-TEST_F(Served, ValuesOnTheStreamAreThoseOfTheMessages) {
+TEST_F(Served, StreamsTheValuesOfTheMessages) {
   parameter_table_t table = table_of({"kx_1_y1"}, {0});
   table.rate_hz = 100;
   table.unit = {"N/m"};
@@ -79,7 +79,7 @@ TEST_F(Served, ValuesOnTheStreamAreThoseOfTheMessages) {
   EXPECT_NE(stream.find("\"acknowledged\":true"), std::string::npos) << stream;
 }
 
-TEST_F(Served, WhatRunKeepsIsAcknowledgedThere) {
+TEST_F(Served, PassesAcknowledgementsToRun) {
   service_t service{};
   service.raised = 1;
   service.event_id = {7};
@@ -122,7 +122,7 @@ TEST_F(Served, WhatRunKeepsIsAcknowledgedThere) {
   EXPECT_NE(text.find("\"acknowledged\":false"), std::string::npos);
 }
 
-TEST_F(Served, ACommandThatNoDaemonTakesIsSaidToTheViewers) {
+TEST_F(Served, TellsViewersThatNoDaemonAnswers) {
   problem_ = "no permission\nfor </script>";
   EventRing::Cursor cursor = view_.join();
   session_command_t command{};
@@ -143,7 +143,7 @@ TEST_F(Served, ACommandThatNoDaemonTakesIsSaidToTheViewers) {
       << text;
 }
 
-TEST(PageCommands, MoreThanCanWaitAreRefused) {
+TEST(PageCommands, RefuseMoreCommandsThanTheQueueHolds) {
   std::promise<void> go;
   const std::future<void> gone = go.get_future();
   std::atomic<int> given = 0;
@@ -162,7 +162,7 @@ TEST(PageCommands, MoreThanCanWaitAreRefused) {
   EXPECT_TRUE(test::comes_true([&] { return given == taken; }, std::chrono::seconds(30)));
 }
 
-TEST_F(Served, BytesThatAreNoMessageChangeNothing) {
+TEST_F(Served, IgnoresBytesThatAreNotAMessage) {
   const std::uint8_t junk[40] = {1, 2, 3};
   for (const char* channel : {"FRAMEWATCH_PARAMETERS", "FRAMEWATCH_ESTIMATE", "FRAMEWATCH_STATUS",
                               "FRAMEWATCH_EVENT", "ACCEL", "ACCEL_CHANNELS"})

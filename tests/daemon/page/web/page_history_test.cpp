@@ -68,14 +68,14 @@ TEST_F(PageHistoryTest, AWindowThatComesLateFillsItsRow) {
   EXPECT_TRUE(history_.late(estimate_at(500'000, {7, 2})));
   EXPECT_FALSE(history_.late(estimate_at(510'000, {8, 2})));  // between two rows
   EXPECT_FALSE(history_.late(estimate_at(9'000'000, {8, 2})));
-  EXPECT_FALSE(history_.late(estimate_at(500'000, {8})));  // another building's
+  EXPECT_FALSE(history_.late(estimate_at(500'000, {8})));  // of another building
   const json rows = json::parse(history_.json(0))["rows"];
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[1][5], json({7, 2}));
   EXPECT_TRUE(rows[2][5][0].is_null());
 }
 
-TEST_F(PageHistoryTest, IsBoundedWhateverTheBuilding) {
+TEST_F(PageHistoryTest, IsBoundedForAnyBuilding) {
   const std::vector<double> many(2000, 1.0);
   for (std::int64_t i = 0; i < 600; ++i) history_.estimate(estimate_at(1'000'000 * i, many));
   EXPECT_EQ(json::parse(history_.json(0))["rows"].size(), PageHistory::kMaxValues / many.size());
@@ -83,14 +83,14 @@ TEST_F(PageHistoryTest, IsBoundedWhateverTheBuilding) {
   EXPECT_LE(json::parse(history_.json(0))["motion"].size(), 20 * PageHistory::kMotion_s + 1);
 }
 
-TEST_F(PageHistoryTest, TheLastValueAndBoxOfAnElementStay) {
+TEST_F(PageHistoryTest, KeepsTheLastValueAndBoxOfAnElement) {
   window_estimate_t e = estimate_at(5'000'000, {10, 20});
   add_boxes(e);
   history_.estimate(e);
   EXPECT_TRUE(json::parse(history_.last_json())["index"].empty());
   e = estimate_at(9'000'000, {11, estimator::kNaN});
   add_boxes(e);
-  e.boxplot_count[1] = 3;  // of a thousand windows: the last that still had a value
+  e.boxplot_count[1] = 3;  // of a thousand windows: the last one with a value
   e.median[1] = 25;
   history_.estimate(e);
   const json last = json::parse(history_.last_json());
@@ -102,8 +102,8 @@ TEST_F(PageHistoryTest, TheLastValueAndBoxOfAnElementStay) {
   EXPECT_EQ(boxes["count"], json({500, 500}));
 }
 
-/// The estimator knows values of before this process began.
-TEST_F(PageHistoryTest, WhatTheEstimatorHoldsIsTheLastValue) {
+/// The estimator may hold values from before this process started.
+TEST_F(PageHistoryTest, ShowsHeldValuesAsLastValue) {
   window_estimate_t e = estimate_at(9'000'000, {estimator::kNaN, estimator::kNaN});
   e.held = 1;
   e.held_index = {1};
@@ -137,7 +137,7 @@ class Answering : public Served {
   void second() {
     for (int i = 0; i < 20; ++i) view_.flush();
   }
-  /// The data of the last event of a name that a viewer who joins now gets.
+  /// Returns the data of the last event with this name that a new viewer receives.
   json joined(const std::string& name) {
     EventRing::Cursor cursor = view_.join();
     std::string text(1'000'000, '\0');
@@ -150,7 +150,7 @@ class Answering : public Served {
   }
 };
 
-TEST_F(Answering, ThePageIsToldThatWindowsHaveComeLate) {
+TEST_F(Answering, TellsThePageOfLateWindows) {
   parameters();
   const std::size_t n = view_parameters();
   send("FRAMEWATCH_ESTIMATE", estimate_at(500'000, std::vector<double>(n, estimator::kNaN)));
@@ -163,7 +163,7 @@ TEST_F(Answering, ThePageIsToldThatWindowsHaveComeLate) {
   EXPECT_EQ(json::parse(view_.history_json())["rows"][0][5][0], 7);
 }
 
-TEST_F(Answering, WhoJoinsLateGetsAnswersFindingsAndHistory) {
+TEST_F(Answering, SendsAnswersFindingsAndHistoryToALateViewer) {
   parameters();
   event_t damage{};
   damage.id = 3;
@@ -187,11 +187,11 @@ TEST_F(Answering, WhoJoinsLateGetsAnswersFindingsAndHistory) {
   json told = joined("answers");
   ASSERT_EQ(told["answers"].size(), 4u);
   ASSERT_EQ(told["findings"].size(), 2u);
-  EXPECT_EQ(told["findings"][0]["place"], "kx_1_y2");  // the gap has not taken its place
+  EXPECT_EQ(told["findings"][0]["place"], "kx_1_y2");  // the gap has not replaced it
   EXPECT_NEAR(told["findings"][0]["ratio"].get<double>(), -0.148, 1e-12);
   EXPECT_NE(told["answers"][0]["line"]["text"].get<std::string>().find("14.8 %"),
             std::string::npos);
-  damage.state = 2;  // it sharpens
+  damage.state = 2;  // it becomes more exact
   damage.value = -15.02;
   damage.std_error = 0.05;
   send("FRAMEWATCH_EVENT", damage);
@@ -211,8 +211,8 @@ TEST_F(Answering, WhoJoinsLateGetsAnswersFindingsAndHistory) {
   EXPECT_NE(history.find("\"rows\":[[5000000,1,"), std::string::npos) << history;
 }
 
-/// With [watch] the page compares with what `framewatch run` compares with.
-TEST(WatchedPage, TheBaselineIsTheOneOfRun) {
+/// With [watch], the page uses the baseline of `framewatch run`.
+TEST(WatchedPage, UsesTheBaselineOfRun) {
   const Config config = test::good(std::string(test::kGoodConfig) + "[watch]\n");
   LiveView view(
       config, [](std::int64_t, const std::string&, const std::vector<std::uint8_t>&) {},

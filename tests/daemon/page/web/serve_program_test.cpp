@@ -10,7 +10,7 @@
 namespace framewatch::daemon {
 namespace serve_program_test {
 
-TEST(ServeProgram, SaysWhenItMayNotOpenEnoughFiles) {
+TEST(ServeProgram, ReportsATooLowLimitOfOpenFiles) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   const test::TemporaryDirectory directory;
   const std::string said = directory.path("said");

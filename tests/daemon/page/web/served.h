@@ -24,7 +24,8 @@
 
 namespace framewatch::test {
 
-/// Answer of a server on this machine: whole, or until `last` has come, if it is given.
+/// Returns the answer of a server on this machine: all of it or, if `last` is given, up to that
+/// text.
 inline std::string ask(int port, const std::string& request, const std::string& last = {}) {
   const int s = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in to{};
@@ -49,8 +50,8 @@ inline std::string request(const std::string& line, const std::string& more = ""
   return line + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + more + "\r\n";
 }
 
-/// A page on a free port, fed with messages directly; what it publishes is in published_, the
-/// commands that it gives are in given(). Daemons answer them with problem_.
+/// A page on a free port that gets messages directly. published_ has its published messages,
+/// given() its commands. Daemons answer commands with problem_.
 class Served : public ::testing::Test {
  protected:
   Served() : Served(settings()) {}
@@ -85,7 +86,7 @@ class Served : public ::testing::Test {
     view_.message(channel, bytes.data(), bytes.size());
   }
 
-  /// The newest command with this service and channel, once it has come; empty without one.
+  /// Waits for and returns the newest command with this service and channel; empty without one.
   std::vector<std::uint8_t> given(const std::string& which) {
     std::vector<std::uint8_t> out;
     comes_true(

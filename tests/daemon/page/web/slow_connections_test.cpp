@@ -33,13 +33,13 @@ using Clock = std::chrono::steady_clock;
 
 // Limits.
 constexpr int kSlow = 2000, kViewers = 200, kAgainAtOnce = 50;
-constexpr std::size_t kLongAnswer = 4 << 20;   // more than the kernel holds
-constexpr std::chrono::seconds kPatience{30};  // for what takes milliseconds
+constexpr std::size_t kLongAnswer = 4 << 20;   // more than the kernel buffers
+constexpr std::chrono::seconds kPatience{30};  // for actions that take milliseconds
 constexpr std::chrono::milliseconds kTick{20};
 
 constexpr std::chrono::seconds kAttack{4};
 
-/// Paths and what their answers hold.
+/// Paths and texts of their answers.
 constexpr std::array<std::pair<const char*, const char*>, 5> kAsked{{{"/healthz", "ok"},
                                                                      {"/metrics", "viewers 200"},
                                                                      {"/", "</html>"},
@@ -67,7 +67,7 @@ bool say(int socket, const std::string& text) {
          static_cast<ssize_t>(text.size());
 }
 
-/// What comes until the other side ends it, or until `last` has come, if it is given.
+/// Returns the bytes up to the end of the connection or, if `last` is given, up to that text.
 std::string rest(int socket, const std::string& last = {}) {
   std::string out;
   char part[4096];
@@ -84,14 +84,14 @@ bool comes_true(const Done& done) {
   return true;
 }
 
-/// A message that the page shows, with that text.
+/// Returns a message with that text, which the page shows.
 session_status_t refusal(const std::string& text) {
   session_status_t s{};
   s.refused = text;
   return s;
 }
 
-/// Does `work` again and again in a thread of its own.
+/// Repeats `work` in a thread.
 class Meanwhile {
  public:
   template <typename Work>
@@ -114,8 +114,7 @@ class Meanwhile {
   std::thread thread_;
 };
 
-/// Connections that send a byte now and then and never a whole request; those that are ended come
-/// back.
+/// Connections that send a byte now and then but never a whole request. Closed ones reconnect.
 class SlowConnections {
  public:
   SlowConnections(int port, int count) : port_(port) {
@@ -176,7 +175,7 @@ TEST_F(Served, AnswersAmongTwoThousandSlowConnections) {
   }
   RecordProperty("longest_ms", static_cast<int>(1e3 * longest_s));
   EXPECT_EQ(server_.viewers(), kViewers);
-  // Those who look on are not ended for others: what comes now reaches every one of them.
+  // Viewers stay connected: each one receives new data.
   send("FRAMEWATCH_SESSION", refusal("late"));
   for (const int s : viewers) {
     EXPECT_NE(rest(s, "late").find("late"), std::string::npos);
@@ -184,7 +183,7 @@ TEST_F(Served, AnswersAmongTwoThousandSlowConnections) {
   }
 }
 
-/// Nobody is waited for longer than a second, and the metrics are long.
+/// No answer may be delayed by more than a second, and the metrics are long.
 class HastyPage : public Served {
  protected:
   static WebSettings settings() {
@@ -201,7 +200,7 @@ class HastyPage : public Served {
   const Meanwhile tended_{[this] { server_.wake(); }};
 };
 
-TEST_F(HastyPage, BytesNowAndThenDoNotKeepARequestOpen) {
+TEST_F(HastyPage, ClosesASlowRequest) {
   const std::string tls("\x16\x03\x01\0\xc8\x01\0\0\xc4\x03\x03", 11), zeros(1000, '\0');
   for (const std::string& begun :
        {std::string(), std::string("G"), std::string("\r\n\r\n\r\n"), std::string(kHalfAHead), tls,
@@ -221,11 +220,11 @@ TEST_F(HastyPage, BytesNowAndThenDoNotKeepARequestOpen) {
   }
   const int s = connect_to(server_.port());
   ASSERT_TRUE(say(s, kHalfAHead));
-  EXPECT_TRUE(rest(s).starts_with("HTTP/1.1 408 ")) << "whoever listens is told";
+  EXPECT_TRUE(rest(s).starts_with("HTTP/1.1 408 ")) << "listeners get the events";
   ::close(s);
 }
 
-TEST_F(HastyPage, AViewerThatNeverReadsIsEndedAndTheOthersSeeNothingOfIt) {
+TEST_F(HastyPage, ClosesAViewerThatNeverReadsWithoutDisturbingOthers) {
   const int never = connect_to(server_.port()), reads = connect_to(server_.port());
   for (const int s : {never, reads}) ASSERT_TRUE(say(s, request("GET /events")));
   const std::string large(100'000, 'x');
@@ -250,7 +249,7 @@ bool is_ended(int socket) {
   return ::poll(&at, 1, 0) == 1 && (at.revents & (POLLERR | POLLHUP)) != 0;
 }
 
-TEST_F(HastyPage, AnAnswerReadByteByByteIsEnded) {
+TEST_F(HastyPage, ClosesAViewerThatReadsByteByByte) {
   const int s = connect_to(server_.port());
   ASSERT_TRUE(say(s, request("GET /metrics")));
   char byte = 0;
@@ -258,7 +257,7 @@ TEST_F(HastyPage, AnAnswerReadByteByByteIsEnded) {
   ::close(s);
 }
 
-/// Two pages may be open.
+/// Allows two open pages.
 class SmallPage : public Served {
  protected:
   static WebSettings settings() {
@@ -276,7 +275,7 @@ class SmallPage : public Served {
   }};
 };
 
-TEST_F(SmallPage, AnswersThatNobodyReadsAreBoundedInAll) {
+TEST_F(SmallPage, BoundsUnreadAnswersInTotal) {
   std::vector<int> sockets;
   for (int i = 0; i < 50; ++i) {
     sockets.push_back(connect_to(server_.port()));

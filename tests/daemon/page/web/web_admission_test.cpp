@@ -14,7 +14,7 @@ WebRequest get(const std::string& path, const std::string& host) {
   return {"GET", path, host, "", "", "", ""};
 }
 
-TEST(WebAdmission, HostMethodTokenOrigin) {
+TEST(WebAdmission, ChecksHostMethodTokenAndOrigin) {
   WebSettings s;
   s.token = "0123456789abcdef";
   EXPECT_TRUE(problems(s).empty());
@@ -42,7 +42,7 @@ TEST(WebAdmission, HostMethodTokenOrigin) {
   }
 }
 
-TEST(WebAdmission, OtherAddressesNeedATokenForEverything) {
+TEST(WebAdmission, RequiresATokenFromOtherAddresses) {
   WebSettings s;
   s.address = "192.168.1.7";
   EXPECT_EQ(problems(s).size(), 1u);

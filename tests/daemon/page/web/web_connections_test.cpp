@@ -33,7 +33,7 @@ std::vector<int> numbers(const std::vector<WebConnections::Ending>& endings) {
   return out;
 }
 
-TEST(WebConnections, TheOldestOfTheBusiestAddressGivesItsPlaceUp) {
+TEST(WebConnections, ReplaceTheOldestOfTheBusiestAddress) {
   WebConnections w(small());
   EXPECT_TRUE(w.opened(1, elsewhere(1), 0).empty());
   for (int i = 2; i <= 8; ++i) EXPECT_TRUE(w.opened(i, elsewhere(2), 0).empty());
@@ -41,7 +41,7 @@ TEST(WebConnections, TheOldestOfTheBusiestAddressGivesItsPlaceUp) {
   EXPECT_EQ(numbers(w.opened(10, elsewhere(2), 0)), std::vector<int>{3});
   EXPECT_EQ(w.use().waiting, 8);
   EXPECT_EQ(w.use().crowded_out, 2);
-  // What is ended already takes no place, and is not ended again.
+  // An ended connection takes no place and is not ended again.
   EXPECT_TRUE(w.asked(2, 0).empty());
   EXPECT_EQ(w.use().answering, 0);
   w.closed(2);
@@ -50,7 +50,7 @@ TEST(WebConnections, TheOldestOfTheBusiestAddressGivesItsPlaceUp) {
   EXPECT_EQ(w.use().waiting, 8);
 }
 
-TEST(WebConnections, WhatIsKeptForThisMachineIsTakenLast) {
+TEST(WebConnections, TakePlacesReservedForThisMachineLast) {
   WebConnections w(small());
   for (int i = 1; i <= 2; ++i) EXPECT_TRUE(w.opened(i, kHere, 0).empty());
   for (int i = 3; i <= 8; ++i) EXPECT_TRUE(w.opened(i, elsewhere(i), 0).empty());
@@ -62,7 +62,7 @@ TEST(WebConnections, WhatIsKeptForThisMachineIsTakenLast) {
   EXPECT_EQ(w.use().waiting, 8);
 }
 
-TEST(WebConnections, ThisMachineFindsAPlaceAmongItsOwn) {
+TEST(WebConnections, ReserveAPlaceForThisMachine) {
   WebConnections w(small());
   for (int i = 1; i <= 8; ++i) EXPECT_TRUE(w.opened(i, kHere, 0).empty());
   for (int i = 9; i <= 2000; ++i)
@@ -70,7 +70,7 @@ TEST(WebConnections, ThisMachineFindsAPlaceAmongItsOwn) {
   EXPECT_TRUE(w.asked(2000, 0).empty());
 }
 
-TEST(WebConnections, ByteByByteIsNoProgress) {
+TEST(WebConnections, CountNoProgressForSingleBytes) {
   WebConnections w(small());
   const std::int64_t most_us = small().request_us;
   EXPECT_TRUE(w.opened(1, kHere, 0).empty());
@@ -91,7 +91,7 @@ TEST(WebConnections, ByteByByteIsNoProgress) {
   EXPECT_EQ(w.use().late_answers, 1);
 }
 
-TEST(WebConnections, AViewerKeepsItsPlaceAndTheNextOneIsRefused) {
+TEST(WebConnections, KeepViewersAndRefuseTheNextOne) {
   WebConnections w(small());
   const auto views = [&](int connection, const PeerAddress& from) {
     EXPECT_TRUE(w.opened(connection, from, 0).empty());
@@ -116,7 +116,7 @@ TEST(WebConnections, AViewerKeepsItsPlaceAndTheNextOneIsRefused) {
   EXPECT_FALSE(w.watches(99));
 }
 
-TEST(WebConnections, AnswersThatNobodyReadsAreBounded) {
+TEST(WebConnections, BoundUnreadAnswers) {
   WebConnections w(small());
   const auto ask = [&](int connection, std::size_t bytes) {
     EXPECT_TRUE(w.opened(connection, kHere, 0).empty());

@@ -25,10 +25,10 @@ std::string with(const std::string& line, const std::string& headers) {
 struct Case {
   const char* what;
   std::string request;
-  const char* status;  ///< empty: ended without an answer
+  const char* status;  ///< empty: closed without an answer
 };
 
-/// The status of the answer; empty: there is none.
+/// Returns the status of the answer; empty if there is none.
 std::string status_of(const std::string& answer) {
   return answer.starts_with("HTTP/1.1 ") ? answer.substr(9, 3) : "";
 }
@@ -79,7 +79,7 @@ std::vector<Case> foreign_requests() {
   };
 }
 
-TEST_F(Served, ForeignRequestsAreRefused) {
+TEST_F(Served, RefusesForeignRequests) {
   for (const Case& c : foreign_requests()) {
     const std::string answer = ask(server_.port(), c.request);
     EXPECT_EQ(status_of(answer), c.status) << c.what << "\n" << answer.substr(0, 300);
@@ -90,8 +90,8 @@ TEST_F(Served, ForeignRequestsAreRefused) {
   EXPECT_EQ(status_of(ask(server_.port(), get("/healthz"))), "200");
 }
 
-TEST_F(Served, NothingHidesBehindARequest) {
-  // What a proxy takes for the body of the first.
+TEST_F(Served, RefusesBytesBehindARequest) {
+  // A proxy takes this for the body of the first request.
   for (const std::string& first :
        {get("/healthz"), with("GET /healthz", "Connection: keep-alive\r\n"),
         with("POST /baseline", "Content-Length: 60\r\n"),
@@ -104,7 +104,7 @@ TEST_F(Served, NothingHidesBehindARequest) {
   }
 }
 
-TEST_F(Served, TheHeadOfAPageHasNoBodyAndTheHeadOfTheStreamEnds) {
+TEST_F(Served, AnswersHeadRequestsWithoutABody) {
   for (const char* path : {"/", "/events", "/metrics"}) {
     const std::string answer = ask(server_.port(), with(std::string("HEAD ") + path, ""));
     EXPECT_EQ(status_of(answer), "200") << path;

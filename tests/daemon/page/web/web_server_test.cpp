@@ -39,7 +39,7 @@ TEST(Page, IsLightAndFetchesNothingFromElsewhere) {
   EXPECT_LT(bytes, kPageBytes);
 }
 
-TEST_F(Served, SessionVerbsGoToTheRecorderAndItsAnswersToThePage) {
+TEST_F(Served, PassesSessionCommandsToTheRecorderAndAnswersBack) {
   const std::string query =
       "POST /session?verb=arm&test=El%20Centro&operator=me&notes=&length_s=&trigger_mps2=0.2&"
       "pre_trigger_s=5";
@@ -81,7 +81,7 @@ TEST_F(Served, SessionVerbsGoToTheRecorderAndItsAnswersToThePage) {
   gap.nrmse = {0.5};
   gap.floor = {0.125};
   send("FRAMEWATCH_GAP", gap);
-  // Both are there for a viewer that comes later.
+  // A later viewer gets both.
   const std::string events = ask(server_.port(), request("GET /events"), "\"floor\":[0.125]");
   EXPECT_NE(events.find("\"answered\":\"" + std::to_string(command->id) + "\""), std::string::npos);
   EXPECT_NE(events.find("\"refused\":\"not \\\"now\\\"\""), std::string::npos) << events;
@@ -89,13 +89,13 @@ TEST_F(Served, SessionVerbsGoToTheRecorderAndItsAnswersToThePage) {
   EXPECT_NE(events.find("\"overall\":0.25,\"noise_floor\":null"), std::string::npos);
 }
 
-TEST_F(Served, AnAcknowledgementSaysWhereItsViewerIs) {
+TEST_F(Served, AnAcknowledgementContainsTheViewersAddress) {
   event_t alarm{};
   alarm.id = 42;
   alarm.state = 1;
   alarm.kind = "gap";
   send("FRAMEWATCH_EVENT", alarm);
-  send("FRAMEWATCH_ACKNOWLEDGED", acknowledged_t{});  // framewatch run keeps them
+  send("FRAMEWATCH_ACKNOWLEDGED", acknowledged_t{});  // framewatch run keeps the acknowledgements
   const std::string answer =
       ask(server_.port(),
           request("POST /acknowledge?id=42", "Cookie: framewatch=0123456789abcdef\r\n"));
@@ -106,14 +106,14 @@ TEST_F(Served, AnAcknowledgementSaysWhereItsViewerIs) {
   EXPECT_NE(answer.find(std::to_string(given_to_run->request)), std::string::npos) << answer;
 }
 
-TEST(Page, PutsNoTextIntoTheDocumentAsMarkup) {
+TEST(Page, InsertsTextsNeverAsMarkup) {
   for (const auto& [path, file] : page_files())
     for (const char* way : {"innerHTML", "outerHTML", "insertAdjacentHTML", "document.write",
                             "eval(", "new Function", "srcdoc"})
       EXPECT_EQ(file.content.find(way), std::string::npos) << path << ": " << way;
 }
 
-TEST_F(Served, PageBuildingAndRefusals) {
+TEST_F(Served, ServesPageAndBuildingAndRefusesOthers) {
   const std::string page = ask(server_.port(), request("GET /"));
   EXPECT_NE(page.find("200 OK"), std::string::npos);
   EXPECT_NE(page.find("Content-Security-Policy: default-src 'none'"), std::string::npos);

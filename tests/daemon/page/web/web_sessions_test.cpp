@@ -17,7 +17,7 @@
 namespace framewatch::daemon {
 namespace web_sessions_test {
 
-TEST(WebSessions, GiveOutReportsAndNothingElse) {
+TEST(WebSessions, ServeOnlyReports) {
   const test::TemporaryDirectory directory;
   for (const char* name : {"2026-11-21T14-03-10_a", "2026-11-21T15-00-00"}) {
     std::filesystem::create_directory(directory.path(name));
@@ -45,7 +45,7 @@ TEST(WebSessions, GiveOutReportsAndNothingElse) {
   EXPECT_FALSE(session_document("", "2026-11-21T15-00-00/report.html"));
 }
 
-/// A folder of sessions with one finished session "a", and a secret beside the folder.
+/// A folder with one finished session "a", and a secret file beside the folder.
 struct SessionsAndASecret {
   SessionsAndASecret() {
     std::filesystem::create_directories(sessions + "/a");
@@ -80,12 +80,12 @@ TEST(WebSessions, FollowNoLinks) {
   ASSERT_EQ(list.size(), 1u) << list;
   EXPECT_EQ(list[0]["test"], "mine");
   EXPECT_EQ(list[0]["report"], false);
-  // The folder itself may be reached by one, as systemd's state directory is.
+  // The folder itself may be a link, like systemd's state directory.
   fs::create_directory_symlink(s.sessions, s.directory.path("link"));
   EXPECT_TRUE(session_document(s.directory.path("link"), "a/session.json"));
 }
 
-TEST(WebSessions, ReadNeitherPipesNorDevicesNorWhatIsHuge) {
+TEST(WebSessions, ReadNoPipesDevicesOrHugeFiles) {
   const SessionsAndASecret s;
   namespace fs = std::filesystem;
   const auto report = [&](const char* name) { return s.sessions + "/" + name + "/report.html"; };
@@ -111,7 +111,7 @@ namespace web_event_reports_test {
 constexpr const char* kReport =
     R"({"verdict": "red", "reasons": ["story 1 drifted"], "start_us": 5000000, "end_us": 9000000})";
 
-/// Two reports, and secrets beside them, behind links, and under other names.
+/// Two reports, and secret files beside them, behind links, and under other names.
 class EventReportsTest : public ::testing::Test {
  protected:
   EventReportsTest() {
@@ -141,7 +141,7 @@ TEST_F(EventReportsTest, AreListedNewestFirst) {
   EXPECT_EQ(event_reports_json("/nonexistent"), "[]");
 }
 
-TEST_F(EventReportsTest, NothingButTheirPagesAndDataIsGivenOut) {
+TEST_F(EventReportsTest, ServeOnlyTheirPagesAndData) {
   EXPECT_EQ(event_report_document(folder_, "event-20261124T000000Z.html").value().content, "<p>");
   EXPECT_EQ(event_report_document(folder_, "event-20261124T000000Z.json").value().type,
             "application/json");
@@ -171,7 +171,7 @@ class ServedEventReports : public test::Served {
   }
 };
 
-TEST_F(ServedEventReports, ComeWithoutScriptsAndOnlyWhereTheyAreWritten) {
+TEST_F(ServedEventReports, AreServedWithoutScripts) {
   const auto asked = [&](const std::string& path) {
     return test::ask(server_.port(), test::request("GET " + path));
   };

@@ -25,7 +25,7 @@ bool warns(const CheckReport& report, const std::string& part) {
   return false;
 }
 
-/// Exit status of the program; its output in `out`.
+/// Returns the exit status of the program; its output is in `out`.
 int run_check(const std::string& arguments, std::string& out) {
   const test::TemporaryDirectory directory;
   const std::string file = directory.path("out");
@@ -91,7 +91,7 @@ TEST(Check, RateTooLowForTheHighestDesignFrequencyWarns) {
   EXPECT_TRUE(warns(r, "above a fifth of the sampling rate, 20 Hz")) << to_text(r);
 }
 
-TEST(Check, RoundingIsTold) {
+TEST(Check, ReportsRounding) {
   const CheckReport r = make_check_report(
       test::good(std::string(kGoodConfig) + "[estimator]\nrate_hz = 120\nhop_s = 0.01\n"));
   EXPECT_EQ(r.hop_rows, 1);
@@ -99,7 +99,7 @@ TEST(Check, RoundingIsTold) {
   EXPECT_TRUE(warns(r, "estimator.hop_s: 0.01 s becomes 0.00833333 s")) << to_text(r);
 }
 
-TEST(CheckCommand, GoodConfigIsSummarisedAndExitsZero) {
+TEST(CheckCommand, SummarizesAGoodConfigurationAndExitsZero) {
   std::string out;
   EXPECT_EQ(run_check(std::string(FRAMEWATCH_SOURCE_DIR) + "/configs/paper_table2.toml", out), 0)
       << out;
@@ -108,7 +108,7 @@ TEST(CheckCommand, GoodConfigIsSummarisedAndExitsZero) {
     EXPECT_NE(out.find(part), std::string::npos) << part << " in\n" << out;
 }
 
-TEST(CheckCommand, BadConfigExitsTwoWithEveryProblem) {
+TEST(CheckCommand, ReportsEveryProblemOfABadConfigurationAndExitsTwo) {
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("bad.toml");
   test::write_file(path, test::replaced(test::replaced(kGoodConfig, "stories = 1", "stores = 1"),

@@ -32,7 +32,7 @@ class Convert : public testing::Test {
     arguments.out = path(out);
     return arguments;
   }
-  /// Exit 2, what is said on stderr, and no file more than before.
+  /// Expects exit 2, this message on stderr, and no new file.
   void expect_refused(const ConvertArguments& arguments, const std::string& rule) {
     const auto before = directory_.names();
     testing::internal::CaptureStderr();
@@ -54,7 +54,7 @@ TEST_F(Convert, CsvToLogAndBackIsTheSameText) {
   EXPECT_EQ(directory_.names(), (std::vector<std::string>{"back.csv", "rec.csv", "rec.lcmlog"}));
 }
 
-TEST_F(Convert, SaysWhatOfTheHeadersItDoesNotKeep) {
+TEST_F(Convert, ReportsHeaderFieldsThatItDrops) {
   test::write_file(path("station.v1"), test::cosmos());
   test::write_file(path("plain.csv"), "time_s,a\n0,1\n0.5,2\n");
   const auto said = [&](const std::string& in, const std::string& out) {
@@ -72,7 +72,7 @@ TEST_F(Convert, SaysWhatOfTheHeadersItDoesNotKeep) {
   EXPECT_EQ(said("plain.csv", "plain.lcmlog").find("headers"), std::string::npos);
 }
 
-TEST_F(Convert, StartsAtTheSensorTimeAskedFor) {
+TEST_F(Convert, StartsAtTheRequestedSensorTime) {
   test::write_file(path("rec.csv"), "time_s,a\n0,1\n0.5,2\n");
   auto arguments = from({path("rec.csv")}, "rec.lcmlog");
   arguments.start_us = 7'000'000;
@@ -82,7 +82,7 @@ TEST_F(Convert, StartsAtTheSensorTimeAskedFor) {
   EXPECT_EQ(test::read_file(path("back.csv")), "time_s,a\n7,1\n7.5,2\n");
 }
 
-TEST_F(Convert, SendsNamedColumnsWhereTheConfigurationSays) {
+TEST_F(Convert, SendsNamedColumnsToConfiguredAddresses) {
   const std::string config_path = FRAMEWATCH_SOURCE_DIR "/configs/mini_shake_table_xsens.toml";
   test::write_file(path("rec.csv"),
                    "time_s,floor-3,extra,ground,floor-1,floor-2\n0,3,9,0,1,2\n0.01,6,9,0,2,4\n");
@@ -175,7 +175,7 @@ window_estimate_t window(std::int32_t status) {
   return e;
 }
 
-TEST_F(Convert, WritesEstimatesAsTheContractSays) {
+TEST_F(Convert, WritesEstimatesInTheDocumentedFormat) {
   drivers::LcmLogWriter log;
   ASSERT_TRUE(log.open(path("est.lcmlog")));
   put(log, "FRAMEWATCH_PARAMETERS", table());
@@ -246,7 +246,7 @@ std::vector<std::string> levels(const std::string& run, const std::string& stamp
   return found;
 }
 
-TEST_F(Convert, PutsTheFourLevelsOfATableTestIntoOneLog) {
+TEST_F(Convert, JoinsTheFourLevelsOfATableTestInOneLog) {
   // The second floor's file of this run begins and ends one sample before the others.
   const auto files = levels("Sine_1.0", "_20250306_122116.csv.gz");
   if (files.size() != 4) GTEST_SKIP() << "no mini_shake_table_xsens_2025 under FRAMEWATCH_DATA";
@@ -298,7 +298,7 @@ TEST_F(Convert, DenoisesEveryChannelOfARecord) {
   testing::internal::CaptureStderr();
   ASSERT_EQ(convert(arguments), 0);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("p = 200, q = 5"), std::string::npos);
-  // THEN the first is as it was, and the second nearer to it
+  // THEN the first is unchanged, and the second is nearer to it
   std::vector<drivers::Problem> problems;
   const auto out = drivers::read_record(path("out.csv"), {}, problems);
   ASSERT_TRUE(out);
@@ -312,7 +312,7 @@ TEST_F(Convert, DenoisesEveryChannelOfARecord) {
   EXPECT_LT(after, 0.5 * before);
 }
 
-TEST_F(Convert, DenoisingNeedsAWholeStretchWithoutHoles) {
+TEST_F(Convert, DenoisingNeedsAStretchWithoutHoles) {
   test::write_file(path("short.csv"), "time_s,a\n0,1\n0.01,2\n");
   std::string text = "time_s,a,b\n";
   for (int i = 0; i < 1000; ++i)

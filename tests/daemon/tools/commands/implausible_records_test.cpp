@@ -12,7 +12,7 @@ namespace implausible_records_test {
 class ImplausibleRecords : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return directory_.path(name); }
-  /// Converts text as rec.csv; what was said. The exit code must be `code`.
+  /// Converts text as rec.csv and returns the messages. The exit code must be `code`.
   std::string said(const std::string& text, int code, const std::string& config = "") {
     test::write_file(path("rec.csv"), text);
     std::filesystem::remove(path("rec.lcmlog"));
@@ -38,7 +38,7 @@ void expect_holds(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << "no " << part << " in: " << text;
 }
 
-TEST_F(ImplausibleRecords, ValuesNoStructureHasAreToldWithFileLineAndValue) {
+TEST_F(ImplausibleRecords, AreReportedWithFileLineAndValue) {
   const std::string said_of =
       said("time_s,a,b\n0,1,200\n0.01,-1e9,-200\n0.02,350,1\n0.03,2,3\n", 0);
   expect_holds(said_of,
@@ -47,17 +47,17 @@ TEST_F(ImplausibleRecords, ValuesNoStructureHasAreToldWithFileLineAndValue) {
   EXPECT_EQ(said_of.find(" b: "), std::string::npos) << said_of;
 }
 
-TEST_F(ImplausibleRecords, AfterLostSamplesTheLineIsStillTheFiles) {
+TEST_F(ImplausibleRecords, AreReportedWithTheRightLineAfterLostSamples) {
   expect_holds(said("time_s,a\n0,1\n0.01,1\n0.02,1\n0.05,1\n0.06,999\n", 0),
                "rec.csv:6: a: 999 m/s^2");
 }
 
-TEST_F(ImplausibleRecords, ValuesThatCannotBeAreRefused) {
+TEST_F(ImplausibleRecords, AreRefusedIfValuesAreImpossible) {
   expect_holds(said("time_s,a\n0,1\n0.01,1e300\n0.02,1\n", 2),
                "rec.csv:3: a: 1e+300 is not an acceleration");
 }
 
-TEST_F(ImplausibleRecords, TimesInMillisecondsOrMicrosecondsAreDoubted) {
+TEST_F(ImplausibleRecords, WarnOfTimesInMillisecondsOrMicroseconds) {
   expect_holds(said("time_s,a\n0,1\n10,1\n20,1\n", 0),
                "rec.csv: 10 s from sample to sample, 0.1 Hz: is the time in seconds?");
   expect_holds(said("time_s,a\n0,1\n10000,1\n20000,1\n", 0), "0.0001 Hz: is the time in seconds?");
@@ -66,7 +66,7 @@ TEST_F(ImplausibleRecords, TimesInMillisecondsOrMicrosecondsAreDoubted) {
   EXPECT_EQ(said("time_s,a\n0,1\n1,1\n2,1\n", 0), "");
 }
 
-TEST_F(ImplausibleRecords, TheConfigurationSaysWhatIsPlausible) {
+TEST_F(ImplausibleRecords, UseTheLimitsOfTheConfiguration) {
   const std::string config = path("config.toml");
   std::string text = test::read_file(FRAMEWATCH_SOURCE_DIR "/configs/mini_shake_table_xsens.toml");
   const std::string name = "name = \"floor-1\"";
@@ -80,7 +80,7 @@ TEST_F(ImplausibleRecords, TheConfigurationSaysWhatIsPlausible) {
   expect_holds(said_of, "rec.csv: sampled at 2 Hz, but " + config + " has rate_hz = ");
 }
 
-TEST_F(ImplausibleRecords, ALogIsConvertedAndTold) {
+TEST_F(ImplausibleRecords, AreReportedButConvertedInALog) {
   expect_holds(said("time_s,a\n0,1\n0.01,300\n0.02,1\n", 0), "rec.csv:3: a: 300 m/s^2");
   expect_holds(converted("rec.lcmlog", "back.csv", 0),
                "rec.lcmlog: at 0.010000 s: a: 300 m/s^2 is beyond 200 m/s^2");

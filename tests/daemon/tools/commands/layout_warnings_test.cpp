@@ -48,14 +48,14 @@ std::string all_of(const CheckReport& report) {
   return out;
 }
 
-TEST(LayoutWarnings, AGoodLayoutHasNone) {
+TEST(LayoutWarnings, AreAbsentForAGoodLayout) {
   const CheckReport r = checked(level(0) + level(5) + level(10));
   ASSERT_TRUE(r.layout);
   EXPECT_EQ(all_of(r).find("channel"), std::string::npos) << all_of(r);
   EXPECT_EQ(all_of(r).find("roof"), std::string::npos) << all_of(r);
 }
 
-TEST(LayoutWarnings, TallOrSlenderFramesThatDoNotBend) {
+TEST(LayoutWarnings, NameTallOrSlenderFramesThatDoNotBend) {
   const std::string channels = level(0) + level(5) + level(10);
   const auto warned = [&](const std::string& what, const std::string& by, const char* direction) {
     const CheckReport r =
@@ -66,7 +66,7 @@ TEST(LayoutWarnings, TallOrSlenderFramesThatDoNotBend) {
   EXPECT_TRUE(warned("name", "name", "y"));
   EXPECT_FALSE(warned("[structure.design]", "[structure.design]\nkrx_nmprad = 3e12", "x"));
   EXPECT_TRUE(warned("[structure.design]", "[structure.design]\nkrx_nmprad = 3e12", "y"));
-  // Nine stories of 35 m in all: by their shape, along x alone of which the width is known.
+  // Nine stories of 3.5 m: judged by their shape along x, the only direction with a known width.
   const std::string lower = test::replaced(
       test::replaced(building(level(0) + level(9)), "stories = 10", "stories = 9"), "20.0", "8.0");
   const CheckReport r =
@@ -77,50 +77,50 @@ TEST(LayoutWarnings, TallOrSlenderFramesThatDoNotBend) {
   EXPECT_FALSE(warns(r, "frames parallel to y of"));
 }
 
-TEST(LayoutWarnings, ADirectionThatNothingMeasures) {
+TEST(LayoutWarnings, NameADirectionThatNoChannelMeasures) {
   const std::string x = "azimuth_deg = 90";
   const CheckReport r = checked(channel("b", 0, x) + channel("m", 5, x) + channel("t", 10, x));
   EXPECT_TRUE(warns(r, "no channel above the base measures along y")) << all_of(r);
   EXPECT_FALSE(warns(r, "measures along x"));
 }
 
-TEST(LayoutWarnings, AGroupOfWhichItsNoiseLeavesNothing) {
+TEST(LayoutWarnings, NameAGroupThatNoiseHides) {
   std::string noisy = level(0) + level(5) + level(10);
   for (std::size_t at = 0; (at = noisy.find("1e-4", at)) != std::string::npos;)
     noisy.replace(at, 4, "0.30");
-  EXPECT_TRUE(warns(checked(noisy), "no value of it will be shown"));
+  EXPECT_TRUE(warns(checked(noisy), "no value will be shown"));
 }
 
-TEST(LayoutWarnings, AFreeTop) {
+TEST(LayoutWarnings, NameARoofWithoutAChannel) {
   const CheckReport r = checked(level(0) + level(4) + level(7));
   EXPECT_TRUE(warns(r, "no channel on the roof, floor 10")) << all_of(r);
 }
 
-TEST(LayoutWarnings, SingleStoriesNearTheRoof) {
+TEST(LayoutWarnings, NameSingleStoriesNearTheRoof) {
   const CheckReport r = checked(level(0) + level(1) + level(5) + level(9) + level(10));
   EXPECT_TRUE(warns(r, "kx_10_y1: a single story near the roof")) << all_of(r);
   EXPECT_FALSE(warns(r, "kx_1_y1"));
 }
 
-TEST(LayoutWarnings, TwoChannelsThatMeasureOneMotion) {
+TEST(LayoutWarnings, NameTwoChannelsThatMeasureTheSameMotion) {
   const std::string base = level(0) + level(10);
   EXPECT_TRUE(warns(
       checked(base + channel("e", 5, "azimuth_deg = 90") + channel("w", 5, "azimuth_deg = 270")),
-      "'e' and 'w' measure one motion of floor 5 with opposite signs"));
+      "'e' and 'w' measure the same motion of floor 5 with opposite signs"));
   EXPECT_TRUE(warns(
       checked(base + channel("e", 5, "azimuth_deg = 90") + channel("f", 5, "azimuth_deg = 90")),
-      "'e' and 'f' measure one motion of floor 5: their mean"));
-  EXPECT_FALSE(warns(checked(base + level(5)), "one motion"));
+      "'e' and 'f' measure the same motion of floor 5: their mean"));
+  EXPECT_FALSE(warns(checked(base + level(5)), "the same motion"));
 }
 
-TEST(LayoutWarnings, AzimuthsThatDoNotFitTheAxes) {
+TEST(LayoutWarnings, NameAzimuthsOffTheFrames) {
   const CheckReport r =
       checked(level(0) + level(10) + channel("s", 5, "azimuth_deg = 60\ny_m = 1"));
   EXPECT_TRUE(warns(r, "'s' points 30 degrees off the frames of direction x")) << all_of(r);
   EXPECT_FALSE(warns(checked(level(0) + level(5) + level(10)), "degrees off"));
 }
 
-TEST(LayoutWarnings, AdviceIsInTextAndJson) {
+TEST(LayoutWarnings, TextAndJsonHaveAdvice) {
   const CheckReport r = checked(level(0) + level(5) + level(10), 2);
   ASSERT_EQ(r.layout->advised.size(), 2u);
   EXPECT_LE(r.layout->advised[0].least_seen_loss, r.layout->advised[1].least_seen_loss);

@@ -13,7 +13,7 @@ namespace demo_can_test {
 
 constexpr double kQuantum_mps2 = 1e-5;
 
-TEST(DemoCan, EveryAccelerometerIsANodeThatSendsWhatItMeasures) {
+TEST(DemoCan, EveryAccelerometerIsASendingNode) {
   Config config = demo_scenario().config;
   put_on_can(config, "vcan0");
   ASSERT_EQ(config.can.nodes.size(), config.pipeline.axes.size());

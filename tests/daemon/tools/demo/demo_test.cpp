@@ -52,7 +52,7 @@ struct Outcome {
   std::string printed;
 };
 
-/// What the view says after these messages, which it gets over LCM like any others.
+/// Returns the view's verdict after these messages, sent over LCM.
 Outcome outcome(const parameter_table_t* table, const window_estimate_t& estimate) {
   drivers::LcmProvider lcm("memq://");
   DemoView view(kTruth, false, false);
@@ -66,7 +66,7 @@ Outcome outcome(const parameter_table_t* table, const window_estimate_t& estimat
   return {exit_code, testing::internal::GetCapturedStdout()};
 }
 
-TEST(DemoView, HoldsWithinItsLimits) {
+TEST(DemoView, PassesWithinItsLimits) {
   const parameter_table_t table = example_table();
   const Outcome o = outcome(&table, example_estimate(20190, 5240));
   EXPECT_EQ(o.exit_code, 0) << o.printed;
@@ -75,7 +75,7 @@ TEST(DemoView, HoldsWithinItsLimits) {
   EXPECT_NE(o.printed.find("1 windows received, 1 valid"), std::string::npos);
 }
 
-TEST(DemoView, FailsBeyondThem) {
+TEST(DemoView, FailsBeyondItsLimits) {
   const parameter_table_t table = example_table();
   EXPECT_EQ(outcome(&table, example_estimate(20210, 5000)).exit_code, 1);
   EXPECT_EQ(outcome(&table, example_estimate(20000, 4700)).exit_code, 1);
@@ -94,7 +94,7 @@ TEST(DemoView, FailsWithoutAValueOrWithoutMessages) {
   EXPECT_EQ(outcome(nullptr, example_estimate(20000, 5000)).exit_code, 1);
 }
 
-TEST(DemoView, SurvivesBytesThatAreNoMessage) {
+TEST(DemoView, SurvivesMalformedMessages) {
   drivers::LcmProvider lcm("memq://");
   DemoView view(kTruth, false, true);
   drivers::LcmSource source(lcm, DemoView::channels("T_"), 100,
@@ -106,7 +106,7 @@ TEST(DemoView, SurvivesBytesThatAreNoMessage) {
   EXPECT_EQ(view.finish(), 1);
 }
 
-TEST(DemoView, HoldsABuildingWithoutPanelsByItsFrames) {
+TEST(DemoView, JudgesABuildingWithoutPanelsByItsFrames) {
   parameter_table_t table = example_table();
   table.kind = {0, 2};
   table.name[1] = "cx_1_y1";
@@ -114,7 +114,7 @@ TEST(DemoView, HoldsABuildingWithoutPanelsByItsFrames) {
   EXPECT_EQ(outcome(&table, example_estimate(20210, 1)).exit_code, 1);
 }
 
-TEST(Demo, OfTwentyStoriesLosesAGroup) {
+TEST(Demo, FindsTheLossOfAGroupOfTwentyStories) {
   const DemoBuilding tall = demo_building(20);
   const auto before = truth_of(tall.scenario, tall.scenario.truth);
   const auto after = truth_of(tall.scenario, after_loss(tall));
@@ -124,7 +124,7 @@ TEST(Demo, OfTwentyStoriesLosesAGroup) {
         << name;
 }
 
-TEST(Demo, ItsTruthIsNotItsDesign) {
+TEST(Demo, TruthDiffersFromTheDesign) {
   const Scenario s = demo_scenario();
   EXPECT_EQ(s.config.pipeline.axes.size(), 10u);
   const Eigen::ArrayXd off = (s.truth.array() / s.config.pipeline.design.array() - 1).abs();
@@ -153,14 +153,14 @@ TEST(Demo, FindsTheTableOverMulticast) {
   EXPECT_NE(o.printed.find("Gk_2_x1y1"), std::string::npos);
 }
 
-TEST(Demo, MakesItsOwnNetworkWhereThereIsNoMulticast) {
+TEST(Demo, CreatesANetworkWithoutMulticast) {
   if (run("unshare -rn true").exit_code != 0) GTEST_SKIP() << "no user namespaces here";
   const Outcome o = run("unshare -rn " + kDemo);
   EXPECT_EQ(o.exit_code, 0) << o.printed;
   EXPECT_NE(o.printed.find("private network namespace"), std::string::npos) << o.printed;
 }
 
-TEST(Demo, RunsInOneProcessWhereThereIsNoNetworkAtAll) {
+TEST(Demo, RunsInOneProcessWithoutANetwork) {
   const std::string forbid =
       "unshare -rn sh -c 'echo 0 > /proc/sys/user/max_net_namespaces && exec ";
   if (run(forbid + "true'").exit_code != 0) GTEST_SKIP() << "no user namespaces here";

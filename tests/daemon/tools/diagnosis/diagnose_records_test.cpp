@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Records as a diagnosis reads them, the channels it uses of them, and why it refuses one.
+// Tests the records of a diagnosis: their channels, and reasons to refuse them.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -39,7 +39,7 @@ story = 1
 frame = "f"
 )";
 
-/// Instants that lead the simulation in, of a record whose motion begins at begin_s.
+/// Returns the instants that lead into the simulation of a record with motion from begin_s on.
 Eigen::Index lead_of_record(double begin_s, bool prescribed) {
   std::string text = "time_s,y,u\n";
   for (int i = 0; i < kSamples; ++i) {
@@ -60,20 +60,21 @@ Eigen::Index lead_of_record(double begin_s, bool prescribed) {
   return records.empty() ? -1 : records.front().samples.lead;
 }
 
-/// The force of a law depends on motion that is simulated from rest: of a record cut from the
-/// middle of a test it was wrong at the beginning (Silverbox: a gap of 0.84 instead of 0.67 %).
-TEST(DiagnoseRecords, AComponentThatBeginsInMotionIsLedIn) {
+/// The force of a law depends on motion simulated from rest. Without a lead it was wrong at the
+/// beginning of a record cut from the middle of a test (Silverbox: a gap of 0.84 instead of 0.67
+/// %).
+TEST(DiagnoseRecords, NeedALeadIfAComponentStartsInMotion) {
   EXPECT_EQ(lead_of_record(0, false), kSamples / 2);
   EXPECT_EQ(lead_of_record(3, false), 0);
 }
 
-TEST(DiagnoseRecords, APrescribedMotionIsNotSimulatedAndNeedsNoLead) {
+TEST(DiagnoseRecords, NeedNoLeadForAPrescribedMotion) {
   EXPECT_EQ(lead_of_record(0, true), 0);
 }
 
-/// Of a record file the whole samples of a delay are taken off, as an acquisition takes them off
-/// the stamps; a fit that began with 0.5 s of delay found no way.
-TEST(DiagnoseRecords, ChannelsAreAlignedByTheirDelays) {
+/// Whole samples of a delay are removed from a record file, as an acquisition removes them from
+/// stamps. A fit that started 0.5 s late did not converge.
+TEST(DiagnoseRecords, AlignChannelsByTheirDelays) {
   constexpr double kRounding = 1e-8;
   std::string text = "time_s,ground,y\n";
   const auto motion = [](int i) { return std::sin(0.05 * i) * std::sin(0.0007 * i * i); };
@@ -93,7 +94,7 @@ TEST(DiagnoseRecords, ChannelsAreAlignedByTheirDelays) {
   EXPECT_NEAR(compared_channels(config, records).axes[1].delay, 0.002, 1e-12);
 }
 
-TEST(ComparedChannels, ThoseForACheckAreLeftAside) {
+TEST(ComparedChannels, LeaveOutCheckChannels) {
   const std::string check = "name = \"F1-Y1\"\ncheck = true\n";
   Config config = test::good(test::replaced(test::kGoodConfig, "name = \"F1-Y1\"\n", check));
   for (const int channel : {2, 4}) {
@@ -141,7 +142,7 @@ TEST(SegmentProblems, SayWhatToMeasure) {
   EXPECT_TRUE(has(calm[0], "no excitation") && has(calm[0], "measure stronger")) << calm[0];
 }
 
-TEST(SegmentProblems, NameTheChannelsWhoseClockIsApart) {
+TEST(SegmentProblems, NameChannelsWithAnotherClock) {
   constexpr Eigen::Index kLate = 30;
   const Eigen::MatrixXd whole = test::Small().record({}, 1);
   Eigen::MatrixXd late = whole.bottomRows(whole.rows() - kLate);

@@ -10,7 +10,7 @@
 namespace framewatch::daemon {
 namespace diagnose_verdict_test {
 
-TEST(ConfidenceWords, SayWhatAnEffectExplainsAloneWhereItDoes) {
+TEST(ConfidenceWords, GiveTheShareThatAnEffectExplainsAlone) {
   estimator::FoundEffect found;
   found.confidence = 0.5;
   found.chosen.fraction = 0.84;
@@ -23,7 +23,7 @@ TEST(ConfidenceWords, SayWhatAnEffectExplainsAloneWhereItDoes) {
 
 constexpr double kTrue = test::kNoise_mps2 / 5;  // density: the root of half of 50 Hz is 5
 
-TEST(NoiseBeyondConfigured, NamesChannelsThatReadMoreThanTwiceTheirNoise) {
+TEST(NoiseBeyondConfigured, NamesChannelsWithMoreThanTwiceTheirNoise) {
   constexpr double kOff = 0.2;
   test::Small small;
   small.axes[0].noise_density = kTrue / 10;
@@ -39,7 +39,7 @@ TEST(NoiseBeyondConfigured, NamesChannelsThatReadMoreThanTwiceTheirNoise) {
   EXPECT_EQ(beyond[1].axis, 4U);
 }
 
-TEST(NoiseBeyondConfigured, TheQuietestRecordCounts) {
+TEST(NoiseBeyondConfigured, UsesTheQuietestRecord) {
   test::Small small;
   small.axes[0].noise_density = kTrue;
   const estimator::Plant plant = small.plant();

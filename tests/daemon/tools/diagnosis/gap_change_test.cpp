@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A frame loses 10 % while the gap's model is learned, and after: the model is of before, and the
-// event names the frame.
+// A frame loses 10 % during or after learning of the gap's model. The model must be that of
+// before, and the event must name the frame.
 #include <gtest/gtest.h>
 
 #include <framewatch/event_t.hpp>
@@ -17,7 +17,7 @@ namespace gap_change_test {
 
 constexpr double kSeconds = 140;
 
-/// Gap events of the demo's building, one frame of which loses a tenth at a time; learn_s = 60.
+/// Returns gap events of the demo's building when one frame loses a tenth at a time; learn_s = 60.
 std::vector<event_t> gaps(double change_s, const std::string& parameter) {
   const test::TemporaryDirectory directory;
   const std::string configs = std::string(FRAMEWATCH_SOURCE_DIR) + "/configs/";
@@ -60,15 +60,15 @@ void expect_named(double change_s, const std::string& parameter) {
       << found.front().message;
 }
 
-TEST(GapChange, WhileTheModelIsLearnedIsNotLearnedAndIsNamed) {
+TEST(GapChange, NamesAChangeDuringLearning) {
   expect_named(36, "kx_1_y2");
 }
 
-TEST(GapChange, AfterTheModelWasLearnedIsNamed) {
+TEST(GapChange, NamesAChangeAfterLearning) {
   expect_named(95, "ky_2_x1");
 }
 
-TEST(GapChange, ThatComesTooSoonToLearnFromIsTheBuildingThatIsLearned) {
+TEST(GapChange, LearnsTheChangedBuildingAfterAnEarlyChange) {
   EXPECT_TRUE(gaps(12, "kx_1_y2").empty());
 }
 

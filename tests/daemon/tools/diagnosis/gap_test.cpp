@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The loop of issue 7: a gap is noticed live, its samples are stored, diagnose names what is
-// missing, the model is adopted while the program runs, and the gap is gone.
+// The loop of issue 7: a gap is noticed live, its samples are stored, diagnose names the missing
+// effect, the running program adopts the model, and the gap disappears.
 #include <algorithm>
 #include <filesystem>
 
@@ -24,7 +24,7 @@ namespace gap_test {
 
 constexpr double kSeconds = 240, kAdopted_s = 150;
 constexpr double kLargeGap = 0.15;  // before, of the learned linear model
-constexpr double kShrinks = 5;      // times, when the missing effect is in
+constexpr double kShrinks = 5;      // times, with the missing effect in the model
 
 const std::string kBuilding = R"([structure]
 name = "plane frame"
@@ -114,7 +114,7 @@ class GapLoop : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-/// Mean of the last ten.
+/// Returns the mean of the last ten.
 double late_gap(const std::vector<framewatch::gap_t>& gaps) {
   double sum = 0;
   const std::size_t count = std::min<std::size_t>(gaps.size(), 10);
@@ -122,7 +122,7 @@ double late_gap(const std::vector<framewatch::gap_t>& gaps) {
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-TEST_F(GapLoop, IsClosedLive) {
+TEST_F(GapLoop, IsFoundAndExplainedLive) {
   const Config building = config();
   drivers::LcmProvider lcm("memq://");
   Heard heard;
@@ -185,7 +185,7 @@ TEST_F(GapLoop, IsClosedLive) {
   EXPECT_EQ(heard.events.back().id, raised.id);
 }
 
-TEST_F(GapLoop, ReplayCutInTwoGivesTheBytesOfTheUncutOne) {
+TEST_F(GapLoop, AReplayInTwoPartsGivesTheBytesOfOne) {
   const auto run = [&](const std::string& out, ReplaySpan span, const std::string& load,
                        const std::string& save) {
     ReplayArguments a;
@@ -206,7 +206,7 @@ TEST_F(GapLoop, ReplayCutInTwoGivesTheBytesOfTheUncutOne) {
               test::read_file(path("first.lcmlog")) + test::read_file(path("second.lcmlog")));
 }
 
-TEST_F(GapLoop, RefusesWhatIsNoModelOfTheBuilding) {
+TEST_F(GapLoop, RefusesAModelOfAnotherBuilding) {
   const std::string building = test::read_file(path("building.toml"));
   const auto refused = [&](const std::string& text) {
     test::write_file(path("model.toml"), text);
@@ -223,7 +223,7 @@ TEST_F(GapLoop, RefusesWhatIsNoModelOfTheBuilding) {
   EXPECT_NE(refused("nonsense").find("model.toml:1"), std::string::npos);
 }
 
-TEST_F(GapLoop, DiagnoseOfAnEventSaysWhatIsMissing) {
+TEST_F(GapLoop, DiagnoseOfAnEventNamesTheMissingEffect) {
   DiagnoseArguments d;
   d.config = path("building.toml");
   d.event = "17";

@@ -24,7 +24,7 @@ std::string open(const InitReading& reading) {
   return out;
 }
 
-/// What the configuration of these answers says.
+/// Returns the configuration made of these answers.
 Config config_of(const std::map<std::string, std::string, std::less<>>& answers) {
   const InitReading reading = read(answers);
   EXPECT_EQ(open(reading), "");
@@ -37,7 +37,7 @@ double lowest_hz(const Config& config) {
   return lowest_frequency_hz(s, estimator::ParameterTable(s), config.pipeline.design);
 }
 
-TEST(BuildingToml, EveryShapeIsGoodAndNotDoubted) {
+TEST(BuildingToml, EveryShapeIsValidAndPlausible) {
   for (const char* live : {"lcm", "none"})
     for (const char* floors : {"flexible", "rigid"})
       for (const int stories : {1, 2, 3, 5, 9, 20})
@@ -59,7 +59,7 @@ TEST(BuildingToml, EveryShapeIsGoodAndNotDoubted) {
         }
 }
 
-TEST(BuildingToml, OneDirectionOnly) {
+TEST(BuildingToml, HandlesASingleDirection) {
   for (const char* direction : {"x", "y"}) {
     const Config one = config_of({{"live", "lcm"},
                                   {"directions", direction},
@@ -82,7 +82,7 @@ TEST(BuildingToml, OneDirectionOnly) {
             (std::vector<double>{2000, 5000, 3000, 2000, 5000, 3000}));
 }
 
-TEST(BuildingToml, MassesAndStiffnessesAreWhatWasAnswered) {
+TEST(BuildingToml, MassesAndStiffnessesMatchTheAnswers) {
   const std::map<std::string, std::string, std::less<>> house{
       {"live", "none"},           {"stories", "2"},    {"bays", "2x1"},
       {"span-x", "6, 4"},         {"span-y", "5"},     {"heights", "3.5, 3"},
@@ -122,7 +122,7 @@ TEST(BuildingToml, AModelStartsFromTheData) {
 TEST(BuildingToml, LcmNodesAreNumberedAsTheChannels) {
   std::map<std::string, std::string, std::less<>> answers{
       {"live", "lcm"}, {"stories", "1"}, {"bays", "0x0"}, {"heights", "3"}, {"mass", "1000"}};
-  const Config one = config_of(answers);  // one node a floor
+  const Config one = config_of(answers);  // one node per floor
   EXPECT_EQ(one.sources[0].sensor_node, 0);
   EXPECT_EQ(one.sources[1].sensor_node, 0);
   EXPECT_EQ(one.sources[3].sensor_node, 1);
@@ -134,7 +134,7 @@ TEST(BuildingToml, LcmNodesAreNumberedAsTheChannels) {
     EXPECT_EQ(each.sources[i].sensor_node, static_cast<int>(i));
 }
 
-TEST(BuildingToml, WhatIsMissingOrWrongIsToldAtOnce) {
+TEST(BuildingToml, ReportsMissingAndWrongAnswersAtOnce) {
   EXPECT_EQ(open(read({})), "live: \nstories: \nbays: \nspan-x: \nspan-y: \nheights: \nmass: \n");
   const InitReading wrong = read({{"live", "lcm"},
                                   {"stories", "2"},

@@ -9,7 +9,7 @@
 namespace framewatch::daemon {
 namespace column_places_test {
 
-/// With so many frames along x and y, named as init names them.
+/// Returns a building with this number of frames along x and y, named as init names them.
 estimator::Structure building(int stories, int frames_x, int frames_y) {
   estimator::Structure s;
   s.stories = stories;
@@ -31,13 +31,13 @@ std::string matched(const estimator::Structure& s, const std::vector<std::string
   return out + (found.ambiguous ? "? " + titles[*found.ambiguous] : "");
 }
 
-TEST(ColumnPlaces, OneSensorAFloorAndDirection) {
+TEST(ColumnPlaces, OneSensorPerFloorAndDirection) {
   const auto s = building(2, 1, 1);
   EXPECT_EQ(matched(s, {"base_x", "base_y", "floor1_x", "floor1_y", "roof_x", "roof_y"}),
             "0:x=base_x 0:y=base_y 1:y1=floor1_x 1:x1=floor1_y 2:y1=roof_x 2:x1=roof_y ");
   EXPECT_EQ(matched(s, {"Ground X", "Ground Y", "1st floor x", "1st floor y", "TopX", "TopY"}),
             "0:x=Ground X 0:y=Ground Y 1:y1=1st floor x 1:x1=1st floor y 2:y1=TopX 2:x1=TopY ");
-  // Along x and y on floors 0, 1, 2; no floor is said otherwise, so y1 is no frame.
+  // Along x and y on floors 0, 1, 2. Nothing else names the floor, so y1 is not a frame.
   EXPECT_EQ(matched(s, {"x0", "y0", "x1", "y1", "x2", "y2"}),
             "0:x=x0 0:y=y0 1:y1=x1 1:x1=y1 2:y1=x2 2:x1=y2 ");
 }
@@ -52,7 +52,7 @@ TEST(ColumnPlaces, APlaneBuildingNeedsNoDirection) {
             "0:x=base 1:y1=A1Y1 2:y1=A2Y1 3:y1=A3Y1 ");
 }
 
-TEST(ColumnPlaces, ALetterWithANumberIsAFrameOrADirection) {
+TEST(ColumnPlaces, ALetterWithANumberMeansAFrameOrADirection) {
   const std::vector<std::string> titles{"A0X", "A0Y", "A1Y1", "A1Y2", "A1X1", "A1X2"};
   const auto s = building(1, 2, 2);
   EXPECT_EQ(matched(s, {"base_x", "base_y", "A1Y1", "A1Y2", "A1X1", "A1X2"}),
@@ -70,8 +70,8 @@ TEST(ColumnPlaces, ALetterWithANumberIsAFrameOrADirection) {
   EXPECT_EQ(match_columns(s, titles, {}).column_of_place[2], std::nullopt);
 }
 
-TEST(ColumnPlaces, TheBuildingCanDecide) {
-  // Three frames along x, two along y: y3 is no third accelerometer along y.
+TEST(ColumnPlaces, TheBuildingDecidesAmbiguousNames) {
+  // Three frames along x, two along y: y3 is not a third accelerometer along y.
   EXPECT_EQ(matched(building(1, 3, 2), {"base_x", "base_y", "y1 story 1", "y2 story 1",
                                         "y3 story 1", "x1 story 1", "x2 story 1"}),
             "0:x=base_x 0:y=base_y 1:y1=y1 story 1 1:y2=y2 story 1 1:y3=y3 story 1 "
@@ -81,17 +81,17 @@ TEST(ColumnPlaces, TheBuildingCanDecide) {
       "0:x=base_x 0:y=base_y 1:y1=F1-X1 1:y2=F1-X2 1:y3=F1-X3 1:x1=F1-Y1 1:x2=F1-Y2 ");
 }
 
-TEST(ColumnPlaces, WhatSaysNoPlaceIsLeft) {
+TEST(ColumnPlaces, LeavesNamesWithoutAPlace) {
   const auto s = building(1, 1, 0);
   // Numbers of sensors, and Japan's 1F, which is the ground floor.
   for (const char* title : {"acc1", "ch1", "1", "1F", "sensor 1", "A1", "temperature", "y1", "z",
                             "floor 2", "floor", "roof floor1", "beschleunigung", ""})
     EXPECT_EQ(matched(s, {title}), "0:x=- 1:y1=- ") << title;
-  // Two columns for one place: neither.
+  // Two columns for one place: neither gets it.
   EXPECT_EQ(matched(s, {"base", "ground", "roof"}), "0:x=- 1:y1=roof ");
 }
 
-TEST(ColumnPlaces, PlacesAreReadAsTheyAreWritten) {
+TEST(ColumnPlaces, ReadsBackWrittenPlaces) {
   const auto s = building(3, 2, 1);
   for (const Place& place : places_of(s)) EXPECT_EQ(parse_place(s, place_option(s, place)), place);
   EXPECT_EQ(parse_place(s, "base:x"), (Place{0, -1, estimator::Direction::x}));

@@ -14,7 +14,7 @@
 namespace framewatch::daemon {
 namespace dialogue_test {
 
-/// A person who types these lines, and what is said to them.
+/// A person who types these lines, and the program's output.
 class Person {
  public:
   std::optional<BuildingPlan> answer(const std::vector<std::string>& lines,
@@ -48,21 +48,22 @@ TEST(InitDialogue, DefaultsAndAnswersMakeABuilding) {
   EXPECT_NE(person.said.find("Enter writes building.toml"), std::string::npos);
 }
 
-TEST(InitDialogue, AWrongAnswerIsAskedAgainAndAnyCanBeChanged) {
+TEST(InitDialogue, AsksAgainAfterAWrongAnswerAndLetsEveryAnswerChange) {
   Person person;
   const auto plan =
       person.answer({"none", "lcm", "", "three", "3", "x", "", "3.5,3", "4,3,3", "18 t", "", "",
-                     "4",  // stories: then the heights do not fit any more
+                     "4",  // stories: the heights no longer fit
                      "2", "4,3.5", ""});
   ASSERT_TRUE(plan) << person.said;
   EXPECT_EQ(plan->structure.story_height, (std::vector<double>{4, 3.5}));
-  EXPECT_NE(person.said.find("That does not do: a whole number from 1 to 200"), std::string::npos)
+  EXPECT_NE(person.said.find("Please answer again: a whole number from 1 to 200"),
+            std::string::npos)
       << person.said;
-  EXPECT_NE(person.said.find("That does not do: there are 3 numbers"), std::string::npos)
+  EXPECT_NE(person.said.find("Please answer again: there are 3 numbers"), std::string::npos)
       << person.said;
 }
 
-TEST(InitDialogue, BackAsksTheQuestionBefore) {
+TEST(InitDialogue, BackReturnsToThePreviousQuestion) {
   Person person;
   const auto plan = person.answer({"back", "", "can", "back", "lcm", "", "3", "back", "2", "x", "",
                                    "3", "900", "none", "200", ""});
@@ -72,14 +73,14 @@ TEST(InitDialogue, BackAsksTheQuestionBefore) {
   EXPECT_NE(person.said.find("This is the first question."), std::string::npos);
 }
 
-TEST(InitDialogue, QuittingOrTheEndOfInputLeavesNothing) {
+TEST(InitDialogue, QuitOrTheEndOfInputWritesNothing) {
   Person person;
   EXPECT_FALSE(person.answer({"", "lcm", "quit"}));
   EXPECT_FALSE(person.answer({"", "lcm"}));
   EXPECT_FALSE(person.answer({"", "lcm", "", "3", "x", "", "3.5", "18 t", "", "", "quit"}));
 }
 
-TEST(InitDialogue, OnlyWhatOptionsDoNotSayIsAsked) {
+TEST(InitDialogue, AsksOnlyWhatOptionsDoNotAnswer) {
   Person person;
   InitAnswers answers;
   answers.by_option = {{"record", "none"}, {"live", "none"},  {"building", "b"},
@@ -89,25 +90,26 @@ TEST(InitDialogue, OnlyWhatOptionsDoNotSayIsAsked) {
   EXPECT_EQ(person.said.find("stories does it have"), std::string::npos) << person.said;
 }
 
-TEST(InitDialogue, ColumnsThatSayNoPlaceAreAskedFor) {
+TEST(InitDialogue, AsksForColumnsWithoutAPlace) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");
   test::write_file(record, "time_s,base,acc2,acc1,spare\n0,0,0,0,0\n0.005,0,0,0,0\n");
   Person person;
   const auto plan = person.answer({record, "", "", "2", "x", "", "3", "900", "none", "acc7", "acc1",
-                                   "acc2",  // floor 1: no such column, then one
+                                   "acc2",  // floor 1: first a missing column, then an existing one
                                    ""});
   ASSERT_TRUE(plan) << person.said;
   EXPECT_EQ(plan->channels[0].column.name, "base");
   EXPECT_EQ(plan->channels[1].column.name, "acc1");
   EXPECT_EQ(plan->channels[2].column.name, "acc2");
   EXPECT_EQ(plan->rate_hz, 200);
-  EXPECT_NE(person.said.find("Which column is floor 1, frame y1, along x? There are acc2, acc1, "
+  EXPECT_NE(person.said.find("Which column belongs to floor 1, frame y1, along x? Columns without "
+                             "a place: acc2, acc1, "
                              "spare."),
             std::string::npos)
       << person.said;
   EXPECT_NE(person.said.find("left out         spare"), std::string::npos) << person.said;
-  // And changed once more at the end: the two are exchanged.
+  // At the end the two are exchanged.
   const auto changed = person.answer({record, "", "", "2", "x", "", "3", "900", "none", "acc1",
                                       "acc2", "10", "acc2=1:y1", "acc1", ""});
   ASSERT_TRUE(changed) << person.said;
@@ -115,7 +117,7 @@ TEST(InitDialogue, ColumnsThatSayNoPlaceAreAskedFor) {
   EXPECT_EQ(changed->channels[2].column.name, "acc1");
 }
 
-TEST(InitDialogue, AWrongChannelTakesNoOtherWithIt) {
+TEST(InitDialogue, AWrongChannelKeepsTheOthers) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");
   test::write_file(record, "time_s,a,b\n0,0,0\n0.005,0,0\n");
@@ -131,7 +133,7 @@ TEST(InitDialogue, AWrongChannelTakesNoOtherWithIt) {
   EXPECT_EQ(plan->channels[1].column.name, "b");
 }
 
-TEST(InitDialogue, ACommaThatCanBeReadInTwoWaysIsAsked) {
+TEST(InitDialogue, AsksAboutAnAmbiguousComma) {
   Person person;
   InitAnswers answers;
   answers.by_option = {{"record", "none"}, {"live", "lcm"},     {"building", "b"},
@@ -143,7 +145,7 @@ TEST(InitDialogue, ACommaThatCanBeReadInTwoWaysIsAsked) {
   EXPECT_EQ(plan->structure.story_height, (std::vector<double>{3, 5}));
 }
 
-TEST(InitDialogue, ARecordThatDoesNotSayItsUnitIsAskedForIt) {
+TEST(InitDialogue, AsksForTheUnitOfARecord) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");
   test::write_file(record, "Time;base_x;roof_x\n0;0;0\n0.01;0;0\n");
@@ -155,7 +157,7 @@ TEST(InitDialogue, ARecordThatDoesNotSayItsUnitIsAskedForIt) {
   EXPECT_EQ(plan->record, record + " --unit g");
 }
 
-TEST(InitDialogue, TitlesOfTwoReadingsAreAskedAbout) {
+TEST(InitDialogue, AsksAboutAmbiguousTitles) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");
   test::write_file(record,

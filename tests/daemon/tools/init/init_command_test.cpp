@@ -21,7 +21,7 @@ class InitCommand : public testing::Test {
 constexpr const char* kHouse =
     "--live lcm --stories 2 --bays 1x1 --span-x 6 --span-y 4 --heights 3 --mass 300kg/m2";
 
-TEST_F(InitCommand, WithoutATerminalAllThatIsMissingIsTold) {
+TEST_F(InitCommand, ReportsAllMissingAnswersWithoutATerminal) {
   const ShellResult said = shell("$F init --stories 2");
   EXPECT_EQ(said.status, kBadInput);
   for (const char* option : {"--live", "--bays", "--span-x", "--span-y", "--heights", "--mass"})
@@ -35,10 +35,9 @@ TEST_F(InitCommand, WithoutATerminalAllThatIsMissingIsTold) {
 TEST_F(InitCommand, WritesWhatCheckAccepts) {
   const ShellResult said = shell(std::string("$F init ") + kHouse);
   EXPECT_EQ(said.status, 0) << said.err;
-  EXPECT_NE(
-      said.out.find("building.toml: written. What follows:\n  framewatch check building.toml\n"
-                    "  framewatch run building.toml\n"),
-      std::string::npos)
+  EXPECT_NE(said.out.find("building.toml: written. Next steps:\n  framewatch check building.toml\n"
+                          "  framewatch run building.toml\n"),
+            std::string::npos)
       << said.out;
   EXPECT_NE(said.out.find("frames y1 to y2 move along x, frames x1 to x2 move along y"),
             std::string::npos)
@@ -46,8 +45,8 @@ TEST_F(InitCommand, WritesWhatCheckAccepts) {
   EXPECT_EQ(shell("$F check building.toml").status, 0);
 }
 
-/// `script` gives it a terminal.
-TEST_F(InitCommand, OnATerminalItAsks) {
+/// Runs on a terminal of `script`.
+TEST_F(InitCommand, AsksOnATerminal) {
   const ShellResult said = shell(
       "printf 'none\\nlcm\\n\\n2\\nx\\n\\n3.5\\n18 t\\n\\n\\n\\n' | "
       "timeout 60 script -qec \"$F init\" /dev/null");
@@ -58,27 +57,27 @@ TEST_F(InitCommand, OnATerminalItAsks) {
   const ShellResult left =
       shell("printf 'none\\nquit\\n' | timeout 60 script -qec \"$F init --out b.toml\" /dev/null");
   EXPECT_EQ(left.status, kBadInput) << left.out;
-  EXPECT_FALSE(left.out.find("left; nothing was written") == std::string::npos) << left.out;
+  EXPECT_FALSE(left.out.find("stopped; nothing was written") == std::string::npos) << left.out;
   EXPECT_EQ(shell("ls b.toml*").out, "");
 }
 
-TEST_F(InitCommand, NeverWritesOverAFileUnlessForced) {
+TEST_F(InitCommand, OverwritesAFileOnlyIfForced) {
   test::write_file(directory_.path("building.toml"), "mine\n");
   const ShellResult said = shell(std::string("$F init ") + kHouse);
   EXPECT_EQ(said.status, kBadInput);
-  EXPECT_NE(said.err.find("building.toml: is there already; --force"), std::string::npos);
+  EXPECT_NE(said.err.find("building.toml: already exists; use --force"), std::string::npos);
   EXPECT_EQ(test::read_file(directory_.path("building.toml")), "mine\n");
   EXPECT_EQ(shell(std::string("$F init --force ") + kHouse).status, 0);
   EXPECT_EQ(shell("$F check building.toml").status, 0);
 }
 
-TEST_F(InitCommand, StandardOutputTakesTheConfigurationAlone) {
+TEST_F(InitCommand, WritesOnlyTheConfigurationToStandardOutput) {
   const ShellResult said = shell(std::string("$F init --out - ") + kHouse + " | $F check -");
   EXPECT_EQ(said.status, 0) << said.err;
   EXPECT_EQ(shell(std::string("$F init --out - --quiet ") + kHouse).err, "");
 }
 
-TEST_F(InitCommand, WhatIsImplausibleIsToldAtOnce) {
+TEST_F(InitCommand, ReportsImplausibleValuesAtOnce) {
   const ShellResult said = shell(
       "$F init --live lcm --stories 2 --bays 1x1 --span-x 6 --span-y 4 "
       "--heights 400 --mass 7");
@@ -94,8 +93,8 @@ TEST_F(InitCommand, ColumnsAreNeverGuessed) {
   const ShellResult said = shell(plane);
   EXPECT_EQ(said.status, kBadInput);
   EXPECT_NE(
-      said.err.find("--channel NAME=1:y1: is missing: Which column is floor 1, frame y1, along "
-                    "x? There are acc1, acc2."),
+      said.err.find("--channel NAME=1:y1: is missing: Which column belongs to floor 1, frame y1, "
+                    "along x? Columns without a place: acc1, acc2."),
       std::string::npos)
       << said.err;
   EXPECT_EQ(shell(plane + "--channel acc1=1:y1 --channel acc2=2:x").status, 0);
@@ -105,15 +104,16 @@ TEST_F(InitCommand, ColumnsAreNeverGuessed) {
                                   "--channel acc1=3:x --channel base=1:x --channel acc2=1:x");
   EXPECT_EQ(wrong.status, kBadInput);
   for (const char* part :
-       {"acc1: write NAME=PLACE", "acc3=1:x: there is no such column; there are ",
-        "acc1=3:x: no place of this building; places are 0:x (base, along x) to 2:y1",
-        "acc2=1:x: base is there already"})
+       {"acc1: write NAME=PLACE",
+        "acc3=1:x: the file has no such column; columns without a place: ",
+        "acc1=3:x: this building has no such place; its places are 0:x (base, along x) to 2:y1",
+        "acc2=1:x: base already has this place"})
     EXPECT_NE(wrong.err.find(part), std::string::npos) << part << "\n" << wrong.err;
   const ShellResult few = shell(plane + "--force --bays 0x1 --span-y 4");
   EXPECT_NE(few.err.find("this building needs 5 channels"), std::string::npos) << few.err;
 }
 
-TEST_F(InitCommand, SignalsOfACanBus) {
+TEST_F(InitCommand, ReadsSignalsOfACanBus) {
   test::write_file(directory_.path("bus.dbc"),
                    "VERSION \"\"\nBU_: N\n"
                    "BO_ 1 Base: 2 N\n SG_ X : 0|16@1- (0.001,0) [0|0] \"g\" N\n"

@@ -14,11 +14,11 @@ namespace framewatch::daemon {
 namespace new_users_way_test {
 
 // Limits.
-constexpr double kMost_s = 300;           // of the four commands, on a busy machine
-constexpr double kStiffnessError = 0.03;  // of the mean of all windows
+constexpr double kMost_s = 300;           // for the four commands, on a busy machine
+constexpr double kStiffnessError = 0.03;  // of the mean over all windows
 
-/// Two stories, one bay each way, shaken for a minute; its stiffnesses differ from the rule of
-/// thumb that init starts from by 1.5 to 3 times. Made into what a logger writes.
+/// Two stories, one bay each way, shaken for a minute. Its stiffnesses differ by 1.5 to 3 times
+/// from the rule of thumb with which init starts. Written as a logger's file.
 constexpr const char* kShaken = R"(config = "truth.toml"
 duration_s = 60
 seed = 7
@@ -49,7 +49,7 @@ class NewUsersWay : public testing::Test {
  protected:
   test::ShellResult shell(const std::string& line) { return test::shell(directory_, line); }
 
-  /// logger.csv, its columns called as `sed` makes them of base-x, F1-Y1, ...
+  /// Writes logger.csv, with columns that `sed` renames from base-x, F1-Y1, ...
   void log_as(const std::string& sed) {
     test::write_file(directory_.path("shaken.toml"), kShaken);
     const test::ShellResult made =
@@ -59,7 +59,7 @@ class NewUsersWay : public testing::Test {
     ASSERT_EQ(made.status, 0) << made.err;
   }
 
-  /// Mean of a column of a CSV file, where it has a value.
+  /// Returns the mean of a column of a CSV file over rows with a value.
   double mean(const std::string& name) {
     std::istringstream lines(test::read_file(directory_.path("estimates.csv")));
     std::string line, cell;
@@ -91,7 +91,7 @@ class NewUsersWay : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(NewUsersWay, FromTheirRecordToAPlotOfTheirStiffnesses) {
+TEST_F(NewUsersWay, LeadsFromARecordToAPlotOfStiffnesses) {
   log_as("s/base-\\([xy]\\)/base_\\1/g; s/F\\([12]\\)-\\([XY][12]\\)/story \\1 frame \\L\\2/g");
   ASSERT_TRUE(test::read_file(directory_.path("logger.csv"))
                   .starts_with("Time;base_x [g];base_y [g];story 1 frame y1 [g];"));
@@ -114,7 +114,7 @@ TEST_F(NewUsersWay, FromTheirRecordToAPlotOfTheirStiffnesses) {
     EXPECT_NEAR(mean(name), stiffness, kStiffnessError * stiffness) << name;
 }
 
-TEST_F(NewUsersWay, TitlesOfTwoReadingsAreNotGuessed) {
+TEST_F(NewUsersWay, DoesNotGuessAmbiguousTitles) {
   log_as("s/base-\\([xy]\\)/base_\\1/g; s/F\\([12]\\)-\\([XY][12]\\)/A\\1\\2/g");
   const std::string init = std::string("$F init --record logger.csv ") + kShape;
   const test::ShellResult asked = shell(init);
@@ -127,7 +127,7 @@ TEST_F(NewUsersWay, TitlesOfTwoReadingsAreNotGuessed) {
   check_replay_report();
 }
 
-TEST_F(NewUsersWay, WhatTheRecordDoesNotSayIsGivenToReplayToo) {
+TEST_F(NewUsersWay, PassesRecordOptionsToReplay) {
   log_as("s/base-\\([xy]\\)/base_\\1/g; s/F\\([12]\\)-\\([XY][12]\\)/story \\1 frame \\L\\2/g");
   ASSERT_EQ(shell("sed -i '1s/ \\[g\\]//g' logger.csv").status, 0);
   const std::string init = std::string("$F init --record logger.csv ") + kShape;

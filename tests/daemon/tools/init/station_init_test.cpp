@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Channels of a building from the headers of its network's files.
+// Tests channels of a building from the headers of its network's files.
 #include <string>
 
 #include <fmt/core.h>
@@ -25,7 +25,7 @@ ChannelColumn column(const char* place, double azimuth_deg) {
   return out;
 }
 
-TEST(StationLayout, AxesAreThoseOfMostChannelsAndPlacesAreTurnedWithThem) {
+TEST(StationLayout, TakesTheAxesOfMostChannelsAndTurnsPlacesWithThem) {
   const std::vector<ChannelColumn> columns = {
       column("Ground floor W side", 20), column("Ground floor", 110), column("Roof E side", 200),
       column("Roof", 110), column("Free field", 0)};
@@ -51,7 +51,7 @@ TEST(StationLayout, AxesAreThoseOfMostChannelsAndPlacesAreTurnedWithThem) {
   EXPECT_EQ(station_place(*reading, columns, 4, plan, why)->why_unused, "not in the building");
 }
 
-TEST(StationLayout, OffsetsAndCoordinatesArePlacesInMetres) {
+TEST(StationLayout, ReadsOffsetsAndCoordinatesAsPlacesInMeters) {
   std::vector<ChannelColumn> columns = {column("Ground floor", 0), column("Roof E side", 0)};
   columns[0].header.north_m = -5;
   columns[0].header.east_m = 2;
@@ -74,10 +74,10 @@ TEST(StationLayout, OffsetsAndCoordinatesArePlacesInMetres) {
   EXPECT_NEAR(*at->x_m, 30, 1e-3);
   columns[1].header.longitude_deg = -140;
   EXPECT_FALSE(station_place(*read_station(columns), columns, 1, plan, why)->x_m)
-      << "no building is so long";
+      << "no building is that long";
 }
 
-TEST(StationLayout, WhatHeadersDoNotSayIsAsked) {
+TEST(StationLayout, AsksForDataThatHeadersLack) {
   std::vector<ChannelColumn> columns = {column("Ground floor", 0), column("somewhere", 0),
                                         column("5th floor", 0), column("Roof", 0)};
   columns[3].header.azimuth_deg.reset();
@@ -106,7 +106,7 @@ TEST(StationLayout, WhatHeadersDoNotSayIsAsked) {
 class StationInit : public testing::Test {
  protected:
   ShellResult shell(const std::string& line) { return test::shell(directory_, line); }
-  /// A file of one channel on a floor, with this azimuth.
+  /// Writes a file of one channel on a floor, with this azimuth.
   void station_file(int number, const std::string& place, const std::string& azimuth) {
     test::CosmosChannel channel;
     channel.number = number;
@@ -149,7 +149,7 @@ TEST_F(StationInit, WritesWhatCheckAccepts) {
             0);
 }
 
-TEST_F(StationInit, AsksForWhatIsMissingByName) {
+TEST_F(StationInit, AsksForMissingPlacesByChannelName) {
   station_file(1, "Ground floor", "180");
   station_file(3, "somewhere W", "180");
   station_file(5, "Roof E side", "180");
@@ -173,8 +173,8 @@ TEST_F(StationInit, AsksForWhatIsMissingByName) {
   EXPECT_EQ(shell(line + "--plan 24x12 --channel NP.8040.03.HNN=2").status, 0);
 }
 
-/// The station of 53 channels whose configuration configs/atwood_np8040.toml was written by hand.
-TEST_F(StationInit, OfTheAtwoodBuildingIsAsWrittenByHand) {
+/// The station of 53 channels of the hand-written configuration configs/atwood_np8040.toml.
+TEST_F(StationInit, MatchesTheHandWrittenAtwoodBuilding) {
   FRAMEWATCH_DATA_OR_SKIP(folder, "atwood_np8040_anchorage2018");
   const ShellResult said =
       shell(fmt::format("$F init --record {}/*.V1c.gz --stories 20 --plan 39.6x39.6 --heights 4 "

@@ -38,14 +38,14 @@ class Reproduce : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(Reproduce, SameBytesWhateverTheThreads) {
+TEST_F(Reproduce, GivesTheSameBytesOnAnyNumberOfThreads) {
   ASSERT_EQ(reproduced("table1", "one", 2, 1).exit_code, 0);
   ASSERT_EQ(reproduced("table1", "two", 2, 3).exit_code, 0);
   EXPECT_EQ(report("one"), report("two"));
   EXPECT_FALSE(std::filesystem::exists(directory_.path("one") + "/accuracy.md"));
 }
 
-TEST_F(Reproduce, OneCaseIsThatCaseOnly) {
+TEST_F(Reproduce, RunsOnlyTheRequestedCase) {
   ASSERT_EQ(reproduced("table-test", "out").exit_code, 0);
   const std::string page = report("out");
   EXPECT_NE(page.find("Figure 10"), std::string::npos);
@@ -56,7 +56,7 @@ TEST_F(Reproduce, OneCaseIsThatCaseOnly) {
     EXPECT_EQ(page.find(part), std::string::npos) << part;
 }
 
-TEST_F(Reproduce, SaysWhenThePapersMotionsAreAbsent) {
+TEST_F(Reproduce, ReportsMissingMotionsOfThePaper) {
   const Outcome o = reproduced("denoise", "out");
   ASSERT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("FRAMEWATCH_DATA"), std::string::npos);
@@ -66,20 +66,20 @@ TEST_F(Reproduce, SaysWhenThePapersMotionsAreAbsent) {
   EXPECT_NE(page.find("Kanai-Tajimi motion"), std::string::npos);
 }
 
-TEST_F(Reproduce, UnknownCaseWritesNothing) {
+TEST_F(Reproduce, WritesNothingForAnUnknownCase) {
   const Outcome o = reproduced("table3", "out");
   EXPECT_EQ(o.exit_code, 2);
   EXPECT_NE(o.err.find("table2c"), std::string::npos);
   EXPECT_TRUE(directory_.names().empty());
 }
 
-TEST_F(Reproduce, AFileInTheWayIsRefused) {
+TEST_F(Reproduce, RefusesToOverwriteAFile) {
   test::write_file(directory_.path("out"), "mine");
   EXPECT_EQ(reproduced("table1", "out").exit_code, 2);
   EXPECT_EQ(test::read_file(directory_.path("out")), "mine");
 }
 
-/// A row whose k is twice its limit and whose intervals hold in 50 %; the rest is well.
+/// A row with twice the limit of k and intervals that hold in 50 %; the rest is good.
 Reproduction with_broken_k() {
   AccuracyRow row{"Table 1, 1 %", {}, {}, {}};
   for (std::size_t kind = 0; kind < 4; ++kind) {
@@ -102,7 +102,7 @@ Reproduction with_broken_k() {
   return all;
 }
 
-TEST(Promises, JudgeWhatTheyAreGiven) {
+TEST(Promises, AreJudgedByTheirNumbers) {
   Reproduction all = with_broken_k();
   int broken = 0;
   for (const Promise& promise : promises(all)) {
@@ -110,13 +110,13 @@ TEST(Promises, JudgeWhatTheyAreGiven) {
     ++broken;
     EXPECT_NE(promise.what.find("k"), std::string::npos) << promise.what;
   }
-  // THEN exactly limit, bound and coverage of k are broken; fewer seeds judge nothing
+  // THEN exactly limit, bound and coverage of k are broken; with fewer seeds nothing is judged
   EXPECT_EQ(broken, 3);
   all.seeds = kSeedsToJudge - 1;
   EXPECT_TRUE(promises(all).empty());
 }
 
-TEST(AccuracyDocument, HasTheNumbersAndWhatIsNotKept) {
+TEST(AccuracyDocument, HasTheNumbersAndTheBrokenPromises) {
   Reproduction all = with_broken_k();
   all.robustness.emplace();
   all.robustness->sweeps.push_back({"fading", {{0.003, {100, 0, 0, 0}, {50, 0, 0, 0}, {}}}});

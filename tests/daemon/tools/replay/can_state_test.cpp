@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What has been seen of CAN is part of a state: whoever goes on from it gives the same samples.
+// The state of CAN is part of a saved state: a run that continues from it gives the same samples.
 #include <algorithm>
 #include <random>
 #include <tuple>
@@ -21,7 +21,7 @@ constexpr int kCuts = 40;
 
 using Samples = std::vector<std::tuple<int, std::int64_t, double>>;
 
-/// Losses, frames twice, overtaken and late, outages, boot-ups.
+/// Losses, repeated, overtaken and late frames, outages, boot-ups.
 std::vector<BusFrame> eventful(const daemon::Config& config, unsigned seed) {
   std::vector<BusFrame> out;
   std::mt19937 random(seed);
@@ -53,7 +53,7 @@ std::vector<BusFrame> eventful(const daemon::Config& config, unsigned seed) {
 
 class CanState : public testing::TestWithParam<const char*> {};
 
-TEST_P(CanState, GoingOnFromAStateGivesTheSamplesOfTheUncutRun) {
+TEST_P(CanState, ContinuesWithTheSamplesOfAnUninterruptedRun) {
   daemon::Config config = test::can_example(GetParam());
   if (config.can.nodes[0].timing == CanTiming::sync) config.can.buses[0].sync_overflow = 0;
   const std::vector<BusFrame> frames = eventful(config, 47);
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, CanState,
                                          "tower", "epson_m_a552"),
                          [](const auto& param) { return std::string(param.param); });
 
-TEST(CanState, AStateCutShortIsRefused) {
+TEST(CanState, RefusesATruncatedState) {
   const daemon::Config config = test::can_example("tower");
   CanIntake intake(config.can, [](const estimator::AccelSample&) {});
   for (const BusFrame& f : test::can_traffic(config, 100)) intake.frame(f.bus, f.frame);

@@ -31,7 +31,7 @@ class Diff : public testing::Test {
   static void TearDownTestSuite() { delete directory_; }
   static std::string a() { return directory_->path("a.lcmlog"); }
 
-  /// A copy with every estimate changed or, when `change` says false, left out.
+  /// Writes a copy with every estimate changed or, if `change` returns false, left out.
   template <typename Change>
   std::string changed(Change change) {
     const std::string to = directory_->path("b.lcmlog");
@@ -65,7 +65,7 @@ class Diff : public testing::Test {
   inline static TemporaryDirectory* directory_ = nullptr;
 };
 
-TEST_F(Diff, ALogIsItself) {
+TEST_F(Diff, FindsNoDifferenceBetweenALogAndItself) {
   EXPECT_EQ(diff_with(changed([](auto&) { return true; })), 0);
   EXPECT_NE(out_.find("files: identical, byte by byte"), std::string::npos) << out_;
   EXPECT_NE(out_.find(" 0 differ; 0 only in A, 0 only in B"), std::string::npos) << out_;
@@ -86,12 +86,12 @@ TEST_F(Diff, NamesFirstAndWorstDifferenceOfAParameter) {
   EXPECT_EQ(out_.find("kx_1_y2"), std::string::npos) << out_;
 }
 
-TEST_F(Diff, CountsWindowsThatOneLacks) {
+TEST_F(Diff, CountsWindowsMissingFromOneLog) {
   EXPECT_EQ(diff_with(changed([](window_estimate_t& e) { return e.sequence % 100 != 5; })), 1);
   EXPECT_NE(out_.find(" 0 differ; 9 only in A, 0 only in B"), std::string::npos) << out_;
 }
 
-TEST_F(Diff, JsonSaysTheSame) {
+TEST_F(Diff, JsonHasTheSameResult) {
   const std::string b = changed([](window_estimate_t& e) {
     if (e.sequence == 300) e.rows += 1;
     return true;
@@ -105,7 +105,7 @@ TEST_F(Diff, JsonSaysTheSame) {
       << json;
 }
 
-TEST_F(Diff, RefusesWhatHoldsNoEstimatesOrIsDamaged) {
+TEST_F(Diff, RefusesLogsWithoutEstimatesAndDamagedLogs) {
   EXPECT_EQ(diff_with(directory_->path("rec.lcmlog")), 2);
   EXPECT_NE(err_.find("holds no window_estimate_t"), std::string::npos) << err_;
   EXPECT_EQ(diff_with("/nonexistent"), 2);

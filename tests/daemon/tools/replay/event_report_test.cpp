@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A shaken building through the whole program: the report after it, the event that names it, and
-// the same bytes every time.
+// Runs a shaken building through the whole program: the report, the event that names it, and the
+// same bytes every time.
 #include <gtest/gtest.h>
 
 #include <framewatch/event_t.hpp>
@@ -20,7 +20,7 @@ namespace event_report_test {
 
 constexpr double kShaken_s = 40, kSeconds = 80, kDrop_s = 20;
 
-/// The demo's table, shaken for 40 s and left alone; one frame loses 25 %.
+/// The demo's table, shaken for 40 s and then at rest; one frame loses 25 %.
 class EventReportReplay : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -76,7 +76,7 @@ class EventReportReplay : public testing::Test {
   inline static test::TemporaryDirectory* directory_ = nullptr;
 };
 
-TEST_F(EventReportReplay, NamesTheFrameAndTheFileAndWritesTheSameBytes) {
+TEST_F(EventReportReplay, NamesFrameAndFileAndWritesTheSameBytes) {
   ASSERT_EQ(replay(arguments("a", "a.lcmlog")), 0);
   ASSERT_EQ(replay(arguments("b", "b.lcmlog")), 0);
   const event_t m = only_event("a.lcmlog");
@@ -108,7 +108,7 @@ TEST_F(EventReportReplay, NamesTheFrameAndTheFileAndWritesTheSameBytes) {
   EXPECT_TRUE(found);
 }
 
-TEST_F(EventReportReplay, CutInTwoGivesTheSameReport) {
+TEST_F(EventReportReplay, InTwoPartsGivesTheSameReport) {
   ReplayArguments whole = arguments("a", "a.lcmlog");
   whole.one_pass = true;
   ASSERT_EQ(replay(whole), 0);
@@ -123,7 +123,7 @@ TEST_F(EventReportReplay, CutInTwoGivesTheSameReport) {
   EXPECT_TRUE(test::read_file(path("a/" + name)) == test::read_file(path("cut/" + name)));
 }
 
-TEST_F(EventReportReplay, LiveWritesTheSameWithoutBeingAsked) {
+TEST_F(EventReportReplay, LiveEstimationWritesTheSameReport) {
   ReplayArguments as_it_comes = arguments("a", "a.lcmlog");
   as_it_comes.one_pass = true;
   ASSERT_EQ(replay(as_it_comes), 0);
@@ -150,7 +150,7 @@ TEST_F(EventReportReplay, LiveWritesTheSameWithoutBeingAsked) {
   EXPECT_TRUE(test::read_file(path("live/" + name)) == test::read_file(path("a/" + name)));
 }
 
-TEST_F(EventReportReplay, NeedsTheSection) {
+TEST_F(EventReportReplay, NeedsTheEventReportSection) {
   ReplayArguments a = arguments("none", "none.lcmlog");
   a.config = test::table_config();
   testing::internal::CaptureStderr();

@@ -22,7 +22,7 @@ Config table_building() {
   return *load_config(test::table_config(), problems);
 }
 
-/// Windows of one parameter that is `value` and then, from window `from` on, `other`.
+/// Returns windows of one parameter that is `value`, and `other` from window `from` on.
 EstimateSeries series_of(const estimator::ParameterTable& table, double value, int from,
                          double other) {
   EstimateSeries series(table, true);
@@ -82,7 +82,7 @@ TEST_F(Expectation, HoldsWithinEachKindOfTolerance) {
   }
 }
 
-TEST_F(Expectation, SaysParameterExpectedFoundDistanceAndTime) {
+TEST_F(Expectation, ReportsParameterExpectedFoundDistanceAndTime) {
   const EstimateSeries series = series_of(table_, 1000, 90, 1200);
   const auto checks = check(
       "[[parameter]]\nname = \"" + table_[0].name + "\"\nvalue = 1000\ntolerance_ratio = 0.01\n",
@@ -106,7 +106,7 @@ TEST_F(Expectation, SpanLimitsTheWindows) {
   EXPECT_FALSE(check(head + "from_s = 50\n", series)[0].holds) << "no window is no proof";
 }
 
-TEST_F(Expectation, SharesGroupsCountsAndEvents) {
+TEST_F(Expectation, ChecksSharesGroupsCountsAndEvents) {
   events_ = {{"stiffness_change", "kx_1_y2", 3'000'000}};
   const EstimateSeries series = series_of(table_, 1000, 100, 0);
   const auto checks = check(
@@ -131,7 +131,7 @@ TEST_F(Expectation, SharesGroupsCountsAndEvents) {
   EXPECT_EQ(failed, 1 + 7 + 1);  // the other seven frames are never observable
 }
 
-TEST_F(Expectation, EveryProblemAtOnceWithItsLine) {
+TEST_F(Expectation, ReportsEveryProblemWithItsLine) {
   write_file(path(),
              "reason = \" \"\n"
              "[counts]\nwindow = 3\ngaps = -1\n"
@@ -150,7 +150,7 @@ TEST_F(Expectation, EveryProblemAtOnceWithItsLine) {
     EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
 }
 
-TEST_F(Expectation, AnythingButTomlOrAnEmptyFileIsRefused) {
+TEST_F(Expectation, RefusesAnythingButTomlAndEmptyFiles) {
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(load_expectations("/nonexistent.toml", table_, problems));
   write_file(path(), "reason = \"x\"\n");
@@ -170,7 +170,7 @@ TEST_F(Expectation, JunitCountsAndEscapes) {
   EXPECT_NE(xml.find("x&quot;&amp;y"), std::string::npos);
 }
 
-TEST(ReplayExpect, WrittenExpectationsHoldAndAWrongOneIsNamedEverywhere) {
+TEST(ReplayExpect, WrittenExpectationsHoldAndAWrongOneIsReportedEverywhere) {
   const TemporaryDirectory directory;
   const auto path = [&](const char* name) { return directory.path(name); };
   test::record_table_test(path("rec.lcmlog"), 9);

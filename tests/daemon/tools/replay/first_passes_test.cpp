@@ -21,9 +21,9 @@ constexpr double kFirstFull_s = 8.5;  // settling, a window, the filters' delay
 constexpr double kArchive_s = 120;    // longer than the minute of motion that a pass takes
 constexpr double kMaxRead = 0.8;      // share of the archive
 
-class FirstPassesOf : public test::ReplayFixture {
+class FirstPassesTest : public test::ReplayFixture {
  protected:
-  /// The table's configuration with a design so many times as stiff.
+  /// Returns the table's configuration with a design that is `times` as stiff.
   std::string design(double factor) {
     std::string text = test::read_file(test::table_config());
     const auto replace = [&](const std::string& from, const std::string& to) {
@@ -43,7 +43,7 @@ class FirstPassesOf : public test::ReplayFixture {
     return name;
   }
 
-  /// Sensor time of the end of the first window with a value, s.
+  /// Returns the sensor time of the end of the first window with a value, s.
   double first_value_s(const std::string& config, bool one_pass) {
     ReplayArguments a;
     a.config = config;
@@ -59,7 +59,7 @@ class FirstPassesOf : public test::ReplayFixture {
   }
 };
 
-TEST_F(FirstPassesOf, AWrongDesignCostsNoFullWindow) {
+TEST_F(FirstPassesTest, AWrongDesignCostsNoFullWindow) {
   for (const double factor : {0.4, 1.0, 2.5}) {
     const std::string config = design(factor);
     const double first_s = first_value_s(config, false);
@@ -68,7 +68,7 @@ TEST_F(FirstPassesOf, AWrongDesignCostsNoFullWindow) {
   }
 }
 
-TEST_F(FirstPassesOf, TheSameInputGivesTheSameBytesAndOneLine) {
+TEST_F(FirstPassesTest, TheSameInputGivesTheSameBytesAndOneLine) {
   const std::string config = design(2.5);
   const test::ReplayOutcome once = test::replay_of({log()}, path("a.lcmlog"), false, config);
   ASSERT_EQ(once.exit_code, 0);
@@ -78,7 +78,7 @@ TEST_F(FirstPassesOf, TheSameInputGivesTheSameBytesAndOneLine) {
   EXPECT_NE(once.err.find(" passes\n"), std::string::npos) << once.err;
 }
 
-TEST_F(FirstPassesOf, ARecordWithoutMotionIsEstimatedAsItComes) {
+TEST_F(FirstPassesTest, ReportsTooLittleMotionToTuneOn) {
   std::string still = test::read_file(csv());
   still = still.substr(0, still.find('\n') + 1);
   const auto columns = std::count(still.begin(), still.end(), ',');
@@ -93,7 +93,7 @@ TEST_F(FirstPassesOf, ARecordWithoutMotionIsEstimatedAsItComes) {
   EXPECT_NE(o.err.find("too little motion to tune on first"), std::string::npos) << o.err;
 }
 
-TEST_F(FirstPassesOf, OfAnArchiveOnlyTheFirstMinuteOfMotionIsRead) {
+TEST_F(FirstPassesTest, ReadsOnlyTheFirstMinuteOfMotionOfAnArchive) {
   const std::string archive = path("archive.lcmlog");
   test::record_table_test(archive, kArchive_s);
   std::vector<ConfigProblem> problems;
@@ -108,7 +108,7 @@ TEST_F(FirstPassesOf, OfAnArchiveOnlyTheFirstMinuteOfMotionIsRead) {
             kMaxRead * static_cast<double>(std::filesystem::file_size(archive)));
 }
 
-TEST_F(FirstPassesOf, InputThatCannotBeReadGivesNone) {
+TEST_F(FirstPassesTest, GivesNoTuningForUnreadableInput) {
   std::vector<ConfigProblem> problems;
   const auto config = load_config(test::table_config(), problems);
   ASSERT_TRUE(config);

@@ -66,7 +66,7 @@ TEST(FloorsOutput, HasEveryFloorAndStory) {
   EXPECT_EQ(cells[3001][0], "30");
 }
 
-TEST(FloorsOutput, MeasuredFloorsAreAsMeasuredAndOthersBetweenThem) {
+TEST(FloorsOutput, GivesMeasuredFloorsAsMeasuredAndInterpolatesOthers) {
   constexpr double kDigits = 1e-4;  // m/s^2
   const TallRecord record = six_stories();
   const auto cells = written(record);
@@ -82,7 +82,7 @@ TEST(FloorsOutput, MeasuredFloorsAreAsMeasuredAndOthersBetweenThem) {
   for (const double peak : largest) EXPECT_GT(peak, 0.1);
 }
 
-TEST(FloorsOutput, WhatIsNotKnownIsEmpty) {
+TEST(FloorsOutput, LeavesUnknownValuesEmpty) {
   TallRecord record = six_stories();
   record.accel.col(0).setConstant(std::nan(""));
   const auto cells = written(record);
@@ -90,13 +90,13 @@ TEST(FloorsOutput, WhatIsNotKnownIsEmpty) {
   EXPECT_EQ(cells[2500][8], "");
 }
 
-TEST(FloorsOutput, SaysWhereItCannotWrite) {
+TEST(FloorsOutput, ReportsWhereItCannotWrite) {
   FloorsOutput output(six_stories().config);
   EXPECT_FALSE(output.open("/nowhere/floors.csv"));
   EXPECT_NE(output.error().find("/nowhere/floors.csv"), std::string::npos);
 }
 
-TEST(ReplayFloors, AreRefusedWithAnotherEnding) {
+TEST(ReplayFloors, RefusesAnotherFileEnding) {
   ReplayArguments arguments;
   arguments.config = "c.toml";
   arguments.inputs = {"in.csv"};

@@ -23,7 +23,7 @@ int golden_replay(const std::string& out) {
   return replay(a);
 }
 
-/// Over the payloads of every window of every length.
+/// Returns the digest over the payloads of every window of every length.
 std::string digest_of_estimates(const std::string& path) {
   drivers::LcmLogReader reader;
   EXPECT_TRUE(reader.open(path));
@@ -37,8 +37,8 @@ TEST(GoldenReplay, IsAsExpected) {
   EXPECT_EQ(golden_replay(""), 0);
 }
 
-// One digest for all builds: debug, release and sanitizers do the same arithmetic. A change that is
-// meant to change numbers in their last bits changes it; `framewatch diff` says by how much.
+// All builds have one digest: debug, release and sanitizers do the same arithmetic. An intended
+// change of last bits changes it; `framewatch diff` tells by how much.
 TEST(GoldenReplay, GivesTheSameBytesInEveryBuild) {
   const TemporaryDirectory directory;
   ASSERT_EQ(golden_replay(directory.path("est.lcmlog")), 0);
@@ -63,7 +63,7 @@ TEST(GoldenReplay, FiveRunsGiveTheSameBytesWithAndWithoutATerminal) {
   }
 }
 
-TEST(GoldenReplay, ItsRecipeGivesTheGoldenLog) {
+TEST(GoldenReplay, TheRecipeGivesTheGoldenLog) {
   const TemporaryDirectory directory;
   const std::string made = directory.path("made.lcmlog"), golden = directory.path("golden.lcmlog");
   ASSERT_EQ(std::system((std::string(FRAMEWATCH_PROGRAM) + " simulate " + kGolden +

@@ -16,7 +16,7 @@
 namespace framewatch::daemon {
 namespace history_output_test {
 
-/// Every row of a table, but for what depends on when it was committed.
+/// Returns every row of a table, without columns that depend on the time of the commit.
 std::vector<std::string> rows_of(const std::string& database, const std::string& table) {
   SqliteFile file;
   EXPECT_TRUE(file.open_to_read(database));
@@ -40,7 +40,7 @@ class HistoryOutputTest : public test::ReplayFixture {
  protected:
   HistoryOutputTest() : config_(test::table_with_history(path("h"))) {}
 
-  /// The messages of the recorded test.
+  /// Returns the messages of the recorded test.
   void estimate(const MessageSink& sink) {
     Estimation estimation(config_, sink);
     ReplaySurvey survey(config_, false);
@@ -64,7 +64,7 @@ class HistoryOutputTest : public test::ReplayFixture {
   Config config_;
 };
 
-TEST_F(HistoryOutputTest, HasTheRowsThatAHistoryOfTheSameMessagesHas) {
+TEST_F(HistoryOutputTest, HasTheRowsOfALiveHistory) {
   {
     SummaryHistory history(config_);
     estimate([&](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
@@ -83,7 +83,7 @@ TEST_F(HistoryOutputTest, TheSameMessagesGiveTheSameBytes) {
   for (const std::string& name : own_.names()) EXPECT_TRUE(name.ends_with(".sqlite")) << name;
 }
 
-TEST_F(HistoryOutputTest, KeepsWholePeriodsOfItsTimeAlone) {
+TEST_F(HistoryOutputTest, KeepsOnlyWholePeriodsOfItsTime) {
   const std::string whole = written("whole.sqlite");
   const auto all = rows_of(whole, "period");
   SqliteFile file;
@@ -97,7 +97,7 @@ TEST_F(HistoryOutputTest, KeepsWholePeriodsOfItsTimeAlone) {
     EXPECT_NE(std::find(all.begin(), all.end(), row), all.end()) << row;
 }
 
-TEST_F(HistoryOutputTest, IsNotThereUntilItIsClosed) {
+TEST_F(HistoryOutputTest, CreatesItsFileOnlyWhenClosed) {
   {
     HistoryOutput out(config_);
     ASSERT_TRUE(out.open(path("x.sqlite")));
@@ -111,7 +111,7 @@ TEST_F(HistoryOutputTest, IsNotThereUntilItIsClosed) {
   EXPECT_FALSE(nowhere.open(path("none/x.sqlite")));
 }
 
-TEST_F(HistoryOutputTest, ReplayWritesItAndRefusesWhatDoesNotFit) {
+TEST_F(HistoryOutputTest, ReplayWritesItAndRefusesBadOptions) {
   const std::string out = path("est.sqlite");
   ASSERT_EQ(test::replay_of({log()}, out).exit_code, 0);
   EXPECT_GT(rows_of(out, "summary").size(), 20u);

@@ -25,7 +25,7 @@
 namespace framewatch::daemon {
 namespace raw_log_replay_test {
 
-/// What a history stored of the table's test, as one raw log.
+/// Returns the raw log that a history stores of the table's test.
 class RawLogReplay : public test::ReplayFixture {
  protected:
   RawLogReplay() : config_(test::table_with_history(path("h"))) {
@@ -47,7 +47,7 @@ class RawLogReplay : public test::ReplayFixture {
 
   std::string raw_log() const { return raw_logs(raw_folder(path("h"))).at(0).path; }
 
-  /// The raw log with every message changed or, when `change` says false, left out.
+  /// Writes the raw log with every message changed or, if `change` returns false, left out.
   template <typename Change>
   std::string changed(Change change) const {
     const std::string out = path("changed.lcmlog");
@@ -78,7 +78,7 @@ class RawLogReplay : public test::ReplayFixture {
   Config config_;
 };
 
-TEST_F(RawLogReplay, GivesTheEstimatesOfTheLogThatIsMadeOfIt) {
+TEST_F(RawLogReplay, GivesTheEstimatesOfItsExportedLog) {
   const std::string config = path("building.toml");
   test::write_file(config, test::read_file(test::table_config()) + "\n[history]\ndirectory = \"" +
                                path("h") + "\"\n");
@@ -96,7 +96,7 @@ TEST_F(RawLogReplay, GivesTheEstimatesOfTheLogThatIsMadeOfIt) {
   EXPECT_EQ(of_raw, test::payloads(path("b.lcmlog"), "FRAMEWATCH_ESTIMATE"));
 }
 
-TEST_F(RawLogReplay, TakesAPartOfIt) {
+TEST_F(RawLogReplay, ReplaysAPart) {
   ReplaySurvey whole(config_, false);
   whole.add(raw_log());
   ReplaySurvey part(config_, false, {2, 5});
@@ -124,7 +124,7 @@ TEST_F(RawLogReplay, EveryReaderOfStoredSamplesReadsIt) {
   EXPECT_GT(samples, 11 * 100 * std::ssize(config_.pipeline.axes));
 }
 
-TEST_F(RawLogReplay, WhatTheSensorDidNotSayIsNoValue) {
+TEST_F(RawLogReplay, MissingCountsGiveNoValue) {
   CountsIntake intake({"a", "b"});
   const auto table = drivers::count_table({"b", "other"}, 100, 0);
   std::vector<estimator::AccelSample> seen;
@@ -146,24 +146,24 @@ TEST_F(RawLogReplay, WhatTheSensorDidNotSayIsNoValue) {
   EXPECT_EQ(intake.missing(), std::vector<std::string>{"a"});
 }
 
-TEST_F(RawLogReplay, WithoutItsTableItIsRefused) {
+TEST_F(RawLogReplay, RefusesALogWithoutItsTable) {
   expect_refused(
       changed([](drivers::LogEvent& e) { return e.channel != drivers::kCountsTableChannel; }),
       "the first: COUNTS: no channel table before it");
 }
 
-TEST_F(RawLogReplay, OfOtherChannelsItIsRefusedWithTheirNames) {
+TEST_F(RawLogReplay, RefusesOtherChannelsAndNamesThem) {
   expect_refused(with_table([](channel_table_t& table) {
                    for (std::string& name : table.name) name = "x" + name;
                  }),
                  "no channel is named like one of");
 }
 
-TEST_F(RawLogReplay, OfAnotherRateItIsRefused) {
+TEST_F(RawLogReplay, RefusesAnotherRate) {
   expect_refused(with_table([](channel_table_t& table) { table.rate_hz = 200; }), "sampled at 200");
 }
 
-TEST_F(RawLogReplay, BlocksThatAreNoneAreRefusedAndLeftOutBySalvage) {
+TEST_F(RawLogReplay, RefusesMalformedBlocksAndSalvagesWithoutThem) {
   int block = 0;
   const std::string log = changed([&](drivers::LogEvent& event) {
     if (event.channel == drivers::kCountsChannel && ++block == 3) event.data.resize(20);
@@ -173,14 +173,14 @@ TEST_F(RawLogReplay, BlocksThatAreNoneAreRefusedAndLeftOutBySalvage) {
   EXPECT_EQ(test::salvage_of(log, path("out.lcmlog")).exit_code, 0);
 }
 
-TEST_F(RawLogReplay, AResolutionThatIsNoneIsRefused) {
+TEST_F(RawLogReplay, RefusesAnInvalidResolution) {
   for (const double bad : {0.0, -1e-6, std::numeric_limits<double>::infinity(),
                            std::numeric_limits<double>::quiet_NaN()})
     expect_refused(with_blocks([&](accel_counts_t& b) { b.resolution_mps2 = bad; }),
                    "messages are not valid in a raw log");
 }
 
-TEST_F(RawLogReplay, TimesAndChannelsBeyondEveryBoundAreLeftAlone) {
+TEST_F(RawLogReplay, IgnoresTimesAndChannelsOutOfRange) {
   const std::string log = with_blocks([](accel_counts_t& b) {
     b.time_us = INT64_MAX;
     for (std::size_t i = 0; i < b.channel.size(); ++i)

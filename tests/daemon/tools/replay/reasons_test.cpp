@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Why a parameter has no value, of half a minute of strong shaking.
+// Tests why a parameter has no value, over half a minute of strong shaking.
 #include <functional>
 #include <sstream>
 #include <string>
@@ -22,7 +22,7 @@ constexpr const char* kChannel = "F1-Y1";
 
 class Reasons : public testing::Test {
  protected:
-  /// Windows without a value by reason, for every parameter, when a channel is spoilt.
+  /// Counts windows without a value by reason, for every parameter, when a channel is spoilt.
   nlohmann::json of(const std::function<std::string(const std::string&)>& spoilt) {
     SimulateArguments s;
     s.scenario = std::string(FRAMEWATCH_SOURCE_DIR) + "/configs/scenario_table_two_story.toml";
@@ -57,7 +57,7 @@ class Reasons : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(Reasons, AReversedChannelIsNotQuiet) {
+TEST_F(Reasons, DoNotCallAReversedChannelQuiet) {
   const nlohmann::json found =
       of([](const std::string& cell) { return cell[0] == '-' ? cell.substr(1) : "-" + cell; });
   const nlohmann::json& own = found["kx_1_y1"];
@@ -66,12 +66,12 @@ TEST_F(Reasons, AReversedChannelIsNotQuiet) {
   EXPECT_GT(own["too uncertain"], 500) << own;
 }
 
-TEST_F(Reasons, ADeadChannelIsTheReasonOnItsWholeFlexibleFloor) {
+TEST_F(Reasons, NameADeadChannelOnItsWholeFlexibleFloor) {
   const nlohmann::json found = of([](const std::string&) { return std::string("0"); });
   for (const char* name : {"kx_1_y1", "kx_1_y2", "ky_1_x1", "cx_1_y2", "Gk_1_x1y1"}) {
     EXPECT_LT(found[name]["warming up"], kWarmUp) << name << found[name];
     EXPECT_GT(found[name]["channel lost"], kWarmUp) << name << found[name];
-    // Half a second passes until what stands still is known to be dead; its rows stay for a window.
+    // A dead channel is detected after half a second; its rows stay for a window.
     EXPECT_LT(found[name]["ok"], kWindow) << name;
   }
   EXPECT_GT(found["kx_2_y2"]["ok"], kWarmUp) << found["kx_2_y2"];

@@ -44,7 +44,7 @@ class RefineCommand : public testing::Test {
 };
 
 TEST_F(RefineCommand, FindsTheTruthWithinItsStatedErrors) {
-  // GIVEN the virtual table test; its scenario's truth, N/m
+  // GIVEN the virtual table test and its scenario's truth, N/m
   const std::pair<const char*, double> truth[] = {{"kx_1_y1", 34e3}, {"kx_1_y2", 25e3},
                                                   {"kx_2_y1", 28e3}, {"ky_1_x1", 26e3},
                                                   {"ky_2_x2", 29e3}, {"Gk_1_x1y1", 38e3}};
@@ -56,7 +56,7 @@ TEST_F(RefineCommand, FindsTheTruthWithinItsStatedErrors) {
     const auto json = nlohmann::json::parse(o.out);
     EXPECT_EQ(json["status"], "converged");
     ASSERT_EQ(json["parameters"].size(), 20u);
-    // THEN every stiffness is where it says it is, and no error is below the bound's order
+    // THEN every stiffness is within its stated error, and no error is far below the bound
     for (const auto& parameter : json["parameters"]) {
       for (const auto& [wanted, value] : truth) {
         if (parameter["name"] != wanted) continue;
@@ -78,7 +78,7 @@ TEST_F(RefineCommand, PrintsATable) {
   EXPECT_NE(o.out.find("Cramer-Rao bound"), std::string::npos) << o.out;
 }
 
-TEST_F(RefineCommand, SaysWhyItCannot) {
+TEST_F(RefineCommand, ReportsWhyItCannotRefine) {
   const std::string rec = record("rec.csv");
   EXPECT_EQ(refined({kConfig, {rec}, 6, 6.05, true, false}).exit_code, 1);
   const Outcome beyond = refined({kConfig, {rec}, 600, 605, true, false});

@@ -27,7 +27,7 @@ constexpr int kEvents = 10;
 constexpr int kFuzzedLogs = 300;
 constexpr unsigned kSeed = 6;
 
-/// The ten events of recipes.md, section 2: one node, a sample every 10 ms.
+/// Returns the ten events of recipes.md, section 2: one node, a sample every 10 ms.
 std::string ten_events() {
   const TemporaryDirectory directory;
   LcmLogWriter writer;
@@ -98,7 +98,7 @@ TEST(Repair, LeavesAnIntactLogAlone) {
   EXPECT_TRUE(r.report["out"].is_null());
 }
 
-TEST(Repair, EveryDamageOfTheTableCostsNoMoreThanItHits) {
+TEST(Repair, EveryDamageCostsOnlyTheEventsItHits) {
   const std::string good = ten_events();
   struct Case {
     const char* name;
@@ -133,7 +133,7 @@ TEST(Repair, EveryDamageOfTheTableCostsNoMoreThanItHits) {
     ASSERT_EQ(r.report["damage"].size(), 1u) << c.name << r.report;
     const auto& damage = r.report["damage"][0];
     EXPECT_EQ(damage["byte"], c.offset) << c.name;
-    if (c.offset >= at(9)) continue;  // nothing after it says how much was lost
+    if (c.offset >= at(9)) continue;  // nothing after it shows how much was lost
     EXPECT_EQ(damage["events"], c.lost.size()) << c.name << damage;
     if (!c.lost.empty()) {
       EXPECT_EQ(damage["after_us"], 30'000) << c.name;
@@ -162,7 +162,7 @@ TEST(Repair, AFuzzedLogNeverLosesAnUntouchedEventAndRepairsOnce) {
       touched.push_back(static_cast<int>(at / kEventBytes));
     }
     const Repaired r = repaired(bytes);
-    if (r.bytes.empty()) continue;  // whole: what was hit were payload bytes
+    if (r.bytes.empty()) continue;  // whole: only payload bytes were hit
     for (const int event : all_but(touched))
       EXPECT_NE(std::find(r.intact.begin(), r.intact.end(), event), r.intact.end())
           << "run " << run << " lost event " << event;
@@ -170,8 +170,8 @@ TEST(Repair, AFuzzedLogNeverLosesAnUntouchedEventAndRepairsOnce) {
   }
 }
 
-/// 2 MB of which every 64 bytes look like an event that reaches nearly to the end, after one that
-/// is whole; it took hours.
+/// After one whole event, 2 MB in which every 64 bytes look like an event that reaches nearly to
+/// the end. Reading it took hours.
 std::string crafted_log() {
   constexpr std::size_t kBytes = 2'000'000;
   std::string log = ten_events().substr(0, kEventBytes);
@@ -201,7 +201,7 @@ TEST(Repair, ACraftedLogTakesSeconds) {
   EXPECT_GT(r.report["damage"].back()["places"], 10'000);
 }
 
-TEST(Repair, CheckWritesNothingAndSaysSo) {
+TEST(Repair, CheckReportsAndWritesNothing) {
   const TemporaryDirectory directory;
   const std::string good = ten_events();
   write_file(directory.path("cut"), good.substr(0, good.size() - 1));
@@ -214,7 +214,7 @@ TEST(Repair, CheckWritesNothingAndSaysSo) {
   EXPECT_EQ(directory.names().size(), 1u);
 }
 
-TEST(Repair, RefusesWhatIsNoLog) {
+TEST(Repair, RefusesFilesThatAreNotALog) {
   const TemporaryDirectory directory;
   write_file(directory.path("text"), std::string(5000, 'Z'));
   testing::internal::CaptureStderr();

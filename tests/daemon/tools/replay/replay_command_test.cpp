@@ -121,7 +121,7 @@ TEST_F(Replay, ForeignChannelsAreCountedAndIgnored) {
             payloads(path("mixed_est.lcmlog"), "FRAMEWATCH_ESTIMATE"));
 }
 
-TEST_F(Replay, CsvIsWhatConvertMakesOfTheLog) {
+TEST_F(Replay, WritesTheSameCsvAsConvert) {
   ASSERT_EQ(replay_of({log()}, path("est.lcmlog")).exit_code, 0);
   ASSERT_EQ(replay_of({log()}, path("est.csv")).exit_code, 0);
   ConvertArguments to_csv;
@@ -162,7 +162,7 @@ TEST_F(Replay, MatHoldsTheValuesOfTheLog) {
   Mat_Close(file);
 }
 
-TEST_F(Replay, CompressedLogGivesTheSameAndACutOneIsRefused) {
+TEST_F(Replay, ReadsACompressedLogAndRefusesATruncatedOne) {
   ASSERT_EQ(std::system(("zstd -q " + log() + " -o " + path("rec.lcmlog.zst")).c_str()), 0);
   ASSERT_EQ(replay_of({log()}, path("plain.lcmlog")).exit_code, 0);
   ASSERT_EQ(replay_of({path("rec.lcmlog.zst")}, path("packed.lcmlog")).exit_code, 0);
@@ -174,7 +174,7 @@ TEST_F(Replay, CompressedLogGivesTheSameAndACutOneIsRefused) {
   EXPECT_EQ(o.exit_code, 0) << o.err;
 }
 
-TEST_F(Replay, SpanIsAsIfTheLogWereCutThere) {
+TEST_F(Replay, ASpanGivesTheEstimatesOfACutLog) {
   const std::vector<LogEvent> events = events_of(log());
   LcmLogWriter writer;
   ASSERT_TRUE(writer.open(path("part")));

@@ -28,7 +28,7 @@ inline ReplayOutcome replay_of(std::vector<std::string> inputs, const std::strin
   return {code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
 }
 
-/// replay --salvage of one log.
+/// Runs replay --salvage on one log.
 inline ReplayOutcome salvage_of(const std::string& input, const std::string& out) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
@@ -45,7 +45,7 @@ inline std::vector<drivers::LogEvent> events_of(const std::string& path) {
   return events;
 }
 
-/// What the events of a channel hold.
+/// Returns the payloads of the events of a channel.
 inline std::vector<std::vector<std::uint8_t>> payloads(const std::string& path,
                                                        const std::string& channel) {
   std::vector<std::vector<std::uint8_t>> found;
@@ -54,7 +54,7 @@ inline std::vector<std::vector<std::uint8_t>> payloads(const std::string& path,
   return found;
 }
 
-/// A copy of the log with every event changed or, when `change` says false, left out.
+/// Writes a copy of the log with every event changed or, if `change` returns false, left out.
 template <typename Change>
 void rewrite(const std::string& from, const std::string& to, Change change) {
   drivers::LcmLogWriter writer;
@@ -81,7 +81,7 @@ class ReplayFixture : public testing::Test {
   static std::string csv() { return directory_->path("rec.csv"); }
   std::string path(const std::string& name) const { return own_.path(name); }
 
-  /// Nothing but what the test itself put there.
+  /// Returns only the files of the test itself.
   void expect_refused(const std::string& input, const std::string& rule) {
     const ReplayOutcome o = replay_of({input}, path("est.lcmlog"));
     EXPECT_EQ(o.exit_code, 2);

@@ -38,7 +38,7 @@ TEST_F(ReplayRefusal, TruncatedLogIsRefusedOrSalvagedUpToItsEnd) {
   EXPECT_NE(o.err.find("cut: byte "), std::string::npos) << o.err;
 }
 
-TEST_F(ReplayRefusal, SalvagedDamageCostsItsEventsOnly) {
+TEST_F(ReplayRefusal, SalvagedDamageCostsOnlyItsEvents) {
   std::string bytes = read_file(log());
   const auto offset = static_cast<std::size_t>(events_of(log())[3000].offset);
   bytes.erase(offset + 40, 1);
@@ -50,7 +50,7 @@ TEST_F(ReplayRefusal, SalvagedDamageCostsItsEventsOnly) {
   EXPECT_NE(o.out.find("lost messages 1,"), std::string::npos) << o.out;
 }
 
-TEST_F(ReplayRefusal, RefusesWhatIsNotThere) {
+TEST_F(ReplayRefusal, RefusesMissingFiles) {
   expect_refused("/nonexistent.lcmlog", "No such file or directory");
   write_file(path("empty"), "");
   expect_refused(path("empty"), "is empty");
@@ -119,7 +119,7 @@ TEST_F(ReplayRefusal, RefusesOrSalvagesInfiniteSamples) {
   EXPECT_NE(o.err.find("infinite acceleration"), std::string::npos) << o.err;
 }
 
-TEST_F(ReplayRefusal, NeverWritesOverItsInputs) {
+TEST_F(ReplayRefusal, NeverOverwritesItsInputs) {
   const std::string before = read_file(log());
   EXPECT_EQ(replay_of({log()}, log()).exit_code, 2);
   EXPECT_EQ(read_file(log()), before);
@@ -128,7 +128,7 @@ TEST_F(ReplayRefusal, NeverWritesOverItsInputs) {
   EXPECT_NE(config.err.find("is input and output"), std::string::npos) << config.err;
 }
 
-TEST_F(ReplayRefusal, RefusesAnOutputOfNoKnownFormat) {
+TEST_F(ReplayRefusal, RefusesAnUnknownOutputFormat) {
   const Outcome o = replay_of({log()}, path("est.xlsx"));
   EXPECT_EQ(o.exit_code, 2);
   EXPECT_NE(o.err.find("must end in .lcmlog, .csv, .csv.gz, .mat or .sqlite"), std::string::npos)
@@ -172,7 +172,7 @@ TEST_F(ReplayRefusal, AFuzzedLogIsRefusedOrSalvagedAndNeverCrashes) {
   EXPECT_GT(refused, kRuns / 2);
 }
 
-TEST_F(ReplayRefusal, SaysThatANewerTypeIsOne) {
+TEST_F(ReplayRefusal, NamesANewerType) {
   rewrite(log(), path("newer"), [](LogEvent& event) {
     if (event.channel == "ACCEL") event.data[0] ^= 0x55;
     return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [watch] through the whole program: learning, events, baseline files, a restart.
+// Runs [watch] through the whole program: learning, events, baseline files, a restart.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -69,7 +69,7 @@ class WatchedTable : public testing::Test {
   inline static test::TemporaryDirectory* directory_ = nullptr;
 };
 
-TEST_F(WatchedTable, SaysWhichElementHowMuchHowSureAndSinceWhen) {
+TEST_F(WatchedTable, NamesElementLossErrorAndTime) {
   ReplayArguments a;
   a.out = path("est.lcmlog");
   ASSERT_EQ(run("learns.toml", "rec.lcmlog", a), 0);
@@ -98,7 +98,7 @@ TEST_F(WatchedTable, SaysWhichElementHowMuchHowSureAndSinceWhen) {
   EXPECT_NEAR(last.value, 100 * (kFactor - 1), 3);
 }
 
-TEST_F(WatchedTable, ABaselineOfOneReplayServesAnother) {
+TEST_F(WatchedTable, UsesTheBaselineOfAnotherReplay) {
   ReplayArguments learn;
   learn.span.to_s = 20;
   learn.write_baseline = path("baseline.toml");
@@ -112,7 +112,7 @@ TEST_F(WatchedTable, ABaselineOfOneReplayServesAnother) {
   EXPECT_EQ(events("rest.lcmlog").front().place, "kx_1_y1");
 }
 
-TEST_F(WatchedTable, AReplayCutInTwoRaisesTheSameAlarms) {
+TEST_F(WatchedTable, AReplayInTwoPartsRaisesTheSameAlarms) {
   ReplayArguments whole, first, second;
   whole.out = path("whole.lcmlog"), first.out = path("1.lcmlog"), second.out = path("2.lcmlog");
   first.save_state = second.load_state = path("state");
@@ -139,7 +139,7 @@ TEST_F(WatchedTable, ReportsEveryProblemOfABaselineFile) {
   watch("bad_config.toml", "baseline = \"bad.toml\"\nalarms_per_year = 0\n");
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(load_config(path("bad_config.toml"), problems));
-  ASSERT_EQ(problems.size(), 1U);  // the configuration's own come first
+  ASSERT_EQ(problems.size(), 1U);  // the configuration's names come first
   EXPECT_NE(problems[0].message.find("alarms_per_year"), std::string::npos);
   watch("bad_config.toml", "baseline = \"bad.toml\"\n");
   EXPECT_FALSE(load_config(path("bad_config.toml"), problems));
@@ -153,7 +153,7 @@ std::optional<Config> watching(const std::string& keys, std::vector<ConfigProble
                       problems);
 }
 
-TEST(QuietWatchConfig, HasLongWindowsUnlessTheyAreTurnedOff) {
+TEST(QuietWatchConfig, HasLongWindowsByDefault) {
   std::vector<ConfigProblem> problems;
   const auto usual = watching("", problems), off = watching("quiet_window_s = 0\n", problems);
   ASSERT_TRUE(usual && off);
@@ -164,7 +164,7 @@ TEST(QuietWatchConfig, HasLongWindowsUnlessTheyAreTurnedOff) {
   EXPECT_NE(problems[0].message.find("quiet_window_s"), std::string::npos);
 }
 
-TEST(QuietWatchConfig, AThermometerIsHeardOnItsChannel) {
+TEST(QuietWatchConfig, ReadsAThermometerOnItsChannel) {
   std::vector<ConfigProblem> problems;
   const auto config = watching("temperature_channel = \"ROOF\"\n", problems),
              none = watching("", problems);
@@ -177,7 +177,7 @@ TEST(QuietWatchConfig, AThermometerIsHeardOnItsChannel) {
   EXPECT_EQ(deaf.message("ROOF", bytes.data(), bytes.size()), drivers::IntakeResult::foreign);
 }
 
-TEST(QuietWatchConfig, ALongWindowMayComeAndGoWhileItRuns) {
+TEST(QuietWatchConfig, ALongWindowCanBeSwitchedWhileRunning) {
   std::vector<ConfigProblem> problems;
   const auto with = watching("", problems), without = watching("quiet_window_s = 0\n", problems);
   ASSERT_TRUE(with && without);
@@ -198,7 +198,7 @@ TEST(QuietWatchConfig, ALongWindowMayComeAndGoWhileItRuns) {
   EXPECT_GT(windows(*without, *with), 1000);
 }
 
-TEST(BaselineFile, IsReadAsItWasWritten) {
+TEST(BaselineFile, ReadsBackWhatWasWritten) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(test::table_config(), problems);
   const estimator::ParameterTable table(config->pipeline.structure);
@@ -215,7 +215,7 @@ TEST(BaselineFile, IsReadAsItWasWritten) {
   EXPECT_TRUE(std::isnan(back->value[1]));
 }
 
-TEST(BaselineFile, IsExtendedByWhatItLacks) {
+TEST(BaselineFile, IsExtendedByMissingParameters) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(test::table_config(), problems);
   const estimator::ParameterTable table(config->pipeline.structure);

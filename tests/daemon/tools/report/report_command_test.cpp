@@ -25,7 +25,7 @@ namespace framewatch::daemon {
 namespace report_command_test {
 
 // Limits.
-constexpr double kStageError_s = 1.0;     // of the moment the shaking stops, known to half a second
+constexpr double kStageError_s = 1.0;     // of the end of the shaking, known to half a second
 constexpr double kDynamicError = 0.03;    // of the mean stiffness ratio, from one mode
 constexpr double kLoopSlopeError = 0.02;  // of the slope through a loop
 
@@ -39,7 +39,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// A virtual test, shaken for 25 s and left alone for 15 s, made once for all cases here.
+/// A virtual test, shaken for 25 s and at rest for 15 s, made once for all cases.
 struct Session {
   std::string directory, raw, estimates;
 
@@ -111,8 +111,8 @@ TEST(SessionReport, FindsForcedAndFreeVibration) {
 TEST(SessionReport, ReferenceDynamicFollowsTheFundamentalFrequencies) {
   const SessionReport r = session().evaluated();
   ASSERT_EQ(r.transfer.size(), 2u);
-  // The truth's frames are stiffer than the drawings' along x and softer along y in the mean; what
-  // the ratio must be is that of the models' lowest natural frequencies.
+  // The true frames are on average stiffer than the drawings along x and softer along y. The
+  // expected ratio is that of the models' lowest natural frequencies.
   const estimator::Structure& s = r.config->pipeline.structure;
   const estimator::ParameterTable table(s);
   Eigen::VectorXd identified(table.size());
@@ -145,7 +145,7 @@ TEST(SessionReport, LoopsHaveTheIdentifiedSlope) {
   }
 }
 
-TEST(SessionReport, BoxplotIsThatOfTheWindow) {
+TEST(SessionReport, ShowsTheBoxplotOfTheWindow) {
   std::mt19937 random(7);
   for (const int count : {1, 2, 3, 10, 499, 500}) {
     estimator::BoxplotWindow window(count);
@@ -167,7 +167,7 @@ TEST(SessionReport, BoxplotIsThatOfTheWindow) {
   EXPECT_EQ(boxplot_of({NAN, INFINITY}).count, 0);
 }
 
-TEST(ReportCommand, SameInputSameBytesNothingFetched) {
+TEST(ReportCommand, GivesTheSameBytesAndLoadsNothing) {
   ASSERT_EQ(report(session().arguments("a.html")), 0);
   ASSERT_EQ(report(session().arguments("b.html")), 0);
   const std::string a = text_of(session().directory + "/a.html");
@@ -181,7 +181,7 @@ TEST(ReportCommand, SameInputSameBytesNothingFetched) {
     EXPECT_EQ(a.find(unwanted), std::string::npos) << unwanted;
 }
 
-TEST(SessionReport, NoTextFromOutsideIsMarkup) {
+TEST(SessionReport, EscapesForeignText) {
   const std::string bad = "</title></td><script>alert(1)</script>\"><img onerror=x>";
   SessionReport r = session().evaluated();
   r.title = r.test = r.operator_name = r.notes = bad;
@@ -209,7 +209,7 @@ TEST(SessionReport, NoTextFromOutsideIsMarkup) {
   }
 }
 
-TEST(ReportCommand, EstimatesAloneAreEnough) {
+TEST(ReportCommand, NeedsOnlyEstimates) {
   ReportArguments a = session().arguments("alone.html");
   a.config.clear();
   a.raw.clear();
@@ -221,7 +221,7 @@ TEST(ReportCommand, EstimatesAloneAreEnough) {
   EXPECT_EQ(html.find("reference-dynamic /"), std::string::npos);
 }
 
-TEST(ReportCommand, ACutOffLogHasAReportThatSaysSo) {
+TEST(ReportCommand, ReportsATruncatedLog) {
   ReportArguments a = session().arguments("cut.html");
   const std::string whole = text_of(session().estimates);
   a.estimates = session().directory + "/cut.lcmlog";
@@ -230,7 +230,7 @@ TEST(ReportCommand, ACutOffLogHasAReportThatSaysSo) {
   EXPECT_NE(text_of(a.out).find("left out"), std::string::npos);
 }
 
-TEST(ReportCommand, RefusesWhatIsNoSession) {
+TEST(ReportCommand, RefusesFilesThatAreNotASession) {
   ReportArguments raw_as_estimates = session().arguments("bad.html");
   raw_as_estimates.estimates = session().raw;
   EXPECT_EQ(report(raw_as_estimates), 2);
@@ -247,7 +247,7 @@ TEST(ReportCommand, RefusesWhatIsNoSession) {
   EXPECT_FALSE(std::filesystem::exists(session().directory + "/bad.html"));
 }
 
-TEST(SessionReport, SensorTimeAsADate) {
+TEST(SessionReport, PrintsSensorTimeAsADate) {
   EXPECT_EQ(sensor_time_text(1'500'000), "1.500 s");
   EXPECT_EQ(sensor_time_text(1'582'934'400'000'000), "2020-02-29 00:00:00 UTC");
   EXPECT_EQ(sensor_time_text(1'798'761'599'000'000), "2026-12-31 23:59:59 UTC");

@@ -18,7 +18,7 @@ struct Session {
   SessionEstimates estimates;
 };
 
-/// The base and floors 2, 4 and 6 of six have channels; nothing was identified.
+/// The base and floors 2, 4 and 6 of six have channels; no parameter is identified.
 Session six_stories() {
   TallTrial trial;
   trial.stories = 6;
@@ -37,7 +37,7 @@ Session six_stories() {
   return out;
 }
 
-TEST(SessionFloors, OfADesignThatIsRightLeaveNothingOpen) {
+TEST(SessionFloors, MatchTheMotionIfTheDesignIsRight) {
   constexpr double kError = 0.01;
   const Session s = six_stories();
   const SessionFloors floors = session_floors(s.config, s.motion, s.estimates);
@@ -51,7 +51,7 @@ TEST(SessionFloors, OfADesignThatIsRightLeaveNothingOpen) {
   EXPECT_LT(floors.from_us, floors.to_us);
 }
 
-TEST(SessionFloors, TakeTheMedianOfTheWindowsOfTheStrongMotion) {
+TEST(SessionFloors, TakeTheMedianOverWindowsOfStrongMotion) {
   Session s = six_stories();
   for (int w = 0; w < 5; ++w) {
     s.estimates.start_us.push_back(10'000'000 + w);
@@ -68,7 +68,7 @@ TEST(SessionFloors, TakeTheMedianOfTheWindowsOfTheStrongMotion) {
   EXPECT_DOUBLE_EQ(floors.theta[0], 1e9 + 2);
 }
 
-TEST(SessionFloors, AreNumbersForPrograms) {
+TEST(SessionFloors, AreWrittenAsJson) {
   const Session s = six_stories();
   const SessionFloors floors = session_floors(s.config, s.motion, s.estimates);
   const auto json = nlohmann::json::parse(floors_json(floors, s.config, s.motion));

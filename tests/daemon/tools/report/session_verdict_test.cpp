@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A frame loses 15 % in the middle of a session: what the report says first, and that nothing in it
-// mixes the building before with the building after.
+// A frame loses 15 % in the middle of a session. The report must start with it and keep the
+// building before and after apart.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ constexpr double kSeconds = 60, kChange_s = 20, kLost = 0.15;
 constexpr double kTimeError_s = 1, kModeError = 0.06;
 const std::string kChanged = "kx_1_y2";
 
-/// A shaken minute of the demo's building, evaluated; change: whether the frame loses stiffness.
+/// A shaken minute of the demo's building, evaluated. change: true if the frame loses stiffness.
 struct Session {
   explicit Session(bool change) {
     const std::string configs = std::string(FRAMEWATCH_SOURCE_DIR) + "/configs/";
@@ -76,7 +76,7 @@ TEST(SessionVerdict, NamesTheFrameItsLossAndTheTime) {
       << verdict_sentence(r);
 }
 
-TEST(SessionVerdict, IsTheFirstThingOnThePageAndEventsComeBeforeFigures) {
+TEST(SessionVerdict, ComesFirstAndEventsComeBeforeFigures) {
   const std::string html = session_report_html(changed().report);
   const std::size_t body = html.find("<body>"), verdict = html.find("Frame y2 of story 1 has lost");
   ASSERT_NE(verdict, std::string::npos);
@@ -85,7 +85,7 @@ TEST(SessionVerdict, IsTheFirstThingOnThePageAndEventsComeBeforeFigures) {
   EXPECT_EQ(html.find("furthest from its reference"), std::string::npos);
 }
 
-TEST(SessionVerdict, NothingMixesBeforeAndAfter) {
+TEST(SessionVerdict, KeepsValuesBeforeAndAfterApart) {
   const SessionReport& r = changed().report;
   ASSERT_EQ(r.compared.size(), 2u);
   EXPECT_FALSE(r.compared[0].after);
@@ -130,7 +130,7 @@ TEST(SessionVerdict, ModesArePairedByShape) {
     const std::vector<double> identified = hz(theta);
     for (const TransferFunction& t : after ? r.transfer_after : r.transfer) {
       EXPECT_GT(t.mac, 0.8);
-      // The same mode of both: order and shape of this building's modes are those of its drawings.
+      // Order and shape of this building's modes match its drawings.
       std::size_t mode = 0;
       for (std::size_t m = 0; m < design.size(); ++m)
         if (std::abs(design[m] - t.model_mode_hz) < std::abs(design[mode] - t.model_mode_hz))
@@ -141,8 +141,8 @@ TEST(SessionVerdict, ModesArePairedByShape) {
   }
 }
 
-/// The changed session turned round: the frame is stiffer after the change. weaker: the errors of
-/// the windows after it, times these.
+/// Reverses the changed session in time: the frame is stiffer after the change. weaker: factor on
+/// the errors of later windows.
 SessionReport grown(double weaker) {
   SessionReport r = changed().report;
   const std::size_t p = changed().index(kChanged);
@@ -157,7 +157,7 @@ SessionReport grown(double weaker) {
   return r;
 }
 
-TEST(SessionVerdict, WhatGrowsWhileTheMotionDiesIsRecoveryAndNoHeadline) {
+TEST(SessionVerdict, CallsGrowthInDecayingMotionRecovery) {
   SessionReport r = grown(3);
   ASSERT_FALSE(r.recoveries.empty());
   EXPECT_TRUE(r.changes.empty());
@@ -169,7 +169,7 @@ TEST(SessionVerdict, WhatGrowsWhileTheMotionDiesIsRecoveryAndNoHeadline) {
   EXPECT_NE(verdict_sentence(r).find("only weaker motion"), std::string::npos);
 }
 
-TEST(SessionVerdict, WhetherTheMotionDiesIsSeenInTheMotionWhereThereIsSome) {
+TEST(SessionVerdict, SeesDecayInTheMotionIfAvailable) {
   SessionReport r = grown(1);
   std::vector<ElementChange> steady = r.changes, dying = r.changes;
   EXPECT_TRUE(take_recoveries(r.estimates, &*r.motion, steady).empty());
@@ -179,14 +179,14 @@ TEST(SessionVerdict, WhetherTheMotionDiesIsSeenInTheMotionWhereThereIsSome) {
   EXPECT_TRUE(dying.empty());
 }
 
-TEST(SessionVerdict, WhatGrowsUnderMotionAsStrongIsAChange) {
+TEST(SessionVerdict, CallsGrowthUnderEqualMotionAChange) {
   const SessionReport r = grown(1);
   EXPECT_TRUE(r.recoveries.empty());
   EXPECT_NE(verdict_sentence(r).find("has become stiffer by 1"), std::string::npos)
       << verdict_sentence(r);
 }
 
-TEST(SessionVerdict, OfABuildingThatStaysTheSameSaysSo) {
+TEST(SessionVerdict, SaysThatABuildingStayedTheSame) {
   const Session same(false);
   EXPECT_TRUE(same.report.changes.empty());
   EXPECT_EQ(verdict_sentence(same.report).rfind("The building has not changed: ", 0), 0u)
@@ -194,7 +194,7 @@ TEST(SessionVerdict, OfABuildingThatStaysTheSameSaysSo) {
   EXPECT_EQ(same.report.compared.size(), 1u);
 }
 
-TEST(SessionVerdict, OfTooShortASessionDoesNotPretend) {
+TEST(SessionVerdict, GivesNoVerdictOnATooShortSession) {
   SessionReport r = changed().report;
   r.changes.clear();
   r.judged.clear();
@@ -202,7 +202,7 @@ TEST(SessionVerdict, OfTooShortASessionDoesNotPretend) {
             std::string::npos);
 }
 
-TEST(SessionVerdict, KnowsAChangeThatOnlyAnEventTells) {
+TEST(SessionVerdict, ReportsAChangeKnownOnlyFromAnEvent) {
   SessionReport r = changed().report;
   event_t event{};
   event.kind = "stiffness_change";
@@ -220,7 +220,7 @@ TEST(SessionVerdict, KnowsAChangeThatOnlyAnEventTells) {
   EXPECT_EQ(session_changes(r.estimates).size(), 1u);
 }
 
-/// Twenty plane stories with four channels, whose model was told to fit as `word` says.
+/// Twenty plane stories with four channels, whose model fit is described by `word`.
 SessionReport tall(std::int32_t word, double bending_nmprad) {
   SessionReport r;
   r.config.emplace();
@@ -237,7 +237,7 @@ SessionReport tall(std::int32_t word, double bending_nmprad) {
   return r;
 }
 
-TEST(SessionVerdict, SaysOfATallBuildingWhetherItsFramesBend) {
+TEST(SessionVerdict, SaysWhetherTheFramesOfATallBuildingBend) {
   EXPECT_NE(bending_sentence(tall(3, 0)).find("set krx_nmprad"), std::string::npos);
   EXPECT_NE(bending_sentence(tall(2, 0)).find("set krx_nmprad"), std::string::npos);
   EXPECT_NE(bending_sentence(tall(1, 0)).find("fits without"), std::string::npos);

@@ -59,7 +59,7 @@ TEST(ChannelCheck, MeasuresNoiseOffsetAndPeak) {
   EXPECT_NEAR(found[0].rms, kDensity * std::sqrt(kRate_hz / 2), 2e-4);
 }
 
-TEST(ChannelCheck, SaysWhatIsWrongWithAChannel) {
+TEST(ChannelCheck, ReportsProblemsOfAChannel) {
   std::vector<estimator::AxisCounters> counters(7);
   counters[1].clipped = 3;
   const auto found = checked(
@@ -90,7 +90,7 @@ TEST(ChannelCheck, SaysWhatIsWrongWithAChannel) {
     EXPECT_NE(found[a].problem.find(words[a]), std::string::npos) << found[a].problem;
 }
 
-TEST(RestLevel, FollowsAnOffsetAndNotTheMotion) {
+TEST(RestLevel, FollowsAnOffsetButNotTheMotion) {
   RestLevel rest(1, kRate_hz);
   double largest_at_rest = 0, peak = 0;
   for (int i = 0; i < 1500; ++i) {
@@ -106,8 +106,8 @@ TEST(RestLevel, FollowsAnOffsetAndNotTheMotion) {
   EXPECT_GT(peak, 0.9);
 }
 
-/// A blow of 20 ms on one of three sensors of a frame that rings at 3 Hz with 1 % damping after it;
-/// the others feel half of the ringing.
+/// A blow of 20 ms on one of three sensors of a frame that then rings at 3 Hz with 1 % damping.
+/// The others feel half of the ringing.
 std::vector<TapTest::Tap> taps_of(const std::vector<std::pair<int, double>>& blows_mps2,
                                   double share = 0.5) {
   TapTest test(3, kRate_hz);
@@ -137,7 +137,7 @@ std::vector<TapTest::Tap> taps_of(const std::vector<std::pair<int, double>>& blo
   return found;
 }
 
-TEST(TapTest, TellsWhichSensorAndWhichWayThroughTheRinging) {
+TEST(TapTest, FindsSensorAndDirectionDespiteRinging) {
   const auto found = taps_of({{1, 2.0}, {0, -1.5}, {2, 1.8}, {1, -2.2}});
   ASSERT_EQ(found.size(), 4u);
   const int axis[] = {1, 0, 2, 1}, sign[] = {1, -1, 1, -1};
@@ -147,13 +147,13 @@ TEST(TapTest, TellsWhichSensorAndWhichWayThroughTheRinging) {
   }
 }
 
-TEST(TapTest, ABlowThatAllFeelAlikeIsNobodys) {
+TEST(TapTest, AssignsABlowThatAllFeelToNoSensor) {
   const auto found = taps_of({{1, 2.0}}, 10.0 / 3);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].axis, -1);
 }
 
-TEST(TapTest, NoiseAndMissingSamplesAreNoTap) {
+TEST(TapTest, IgnoresNoiseAndMissingSamples) {
   TapTest test(2, kRate_hz);
   for (int i = 0; i < 1000; ++i)
     EXPECT_FALSE(test.push({i % 7 == 0 ? NAN : 0.04 * std::sin(i), NAN}, {0.05, 0.05}));

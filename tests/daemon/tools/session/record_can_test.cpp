@@ -21,7 +21,7 @@ constexpr double kLoadError = 1e-9;
 
 const std::string kTower = FRAMEWATCH_SOURCE_DIR "/configs/can/tower.toml";
 
-TEST(RecordCan, FramesAreStoredAndReported) {
+TEST(RecordCan, StoresAndReportsFrames) {
   const Config config = test::can_example("tower");
   std::vector<ConfigProblem> problems;
   const auto scenario =
@@ -69,7 +69,7 @@ TEST(RecordCan, FramesAreStoredAndReported) {
   EXPECT_EQ(session->stages[0].kind, StageKind::forced);
 }
 
-TEST(CanMonitor, TellsRateAndLoadOfEveryFrameOnTheBus) {
+TEST(CanMonitor, ReportsRateAndLoadOfEveryFrameOnTheBus) {
   const Config config = test::can_example("tower");
   const drivers::CanBusMap& bus = config.can.buses[0];
   const test::TemporaryDirectory directory;

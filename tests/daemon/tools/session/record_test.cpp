@@ -30,14 +30,14 @@ namespace record_test {
 
 // Limits.
 constexpr std::int64_t kInstant_us = 10'000;  // between two samples of a node
-constexpr double kLostByCrash_s = 1.5;        // at most, of what came before a kill
+constexpr double kLostByCrash_s = 1.5;        // largest loss before a kill
 
 namespace fs = std::filesystem;
 using drivers::LcmLogReader;
 using drivers::LogEvent;
 using drivers::LogRead;
 
-/// Three processes over LCM; `during` happens in the middle of the recording.
+/// Runs three processes over LCM; `during` runs in the middle of the recording.
 struct LiveSession {
   test::TemporaryDirectory directory;
   std::string folder;
@@ -69,7 +69,7 @@ bool no_multicast(std::string& error) {
   return !error.empty() || !drivers::open_lcm(test::table_configuration().lcm.url, {}, error);
 }
 
-/// Samples of one node that are missing between the first and the last.
+/// Counts missing samples of one node between its first and last.
 std::int64_t missing_in(const std::vector<std::int64_t>& times) {
   const std::map<std::int64_t, int> nodes = [&] {
     std::map<std::int64_t, int> count;
@@ -82,7 +82,7 @@ std::int64_t missing_in(const std::vector<std::int64_t>& times) {
   return missing;
 }
 
-TEST(Record, TheEstimatorsDeathCostsNoSample) {
+TEST(Record, AnEstimatorCrashCostsNoSample) {
   std::string why;
   if (no_multicast(why)) GTEST_SKIP() << why;
   const LiveSession live({"--no-check", "--seconds", "14"},
@@ -91,12 +91,12 @@ TEST(Record, TheEstimatorsDeathCostsNoSample) {
   const auto times = test::times_of(live.folder + "/raw.lcmlog");
   EXPECT_GT(times.size(), 13000u);
   EXPECT_EQ(missing_in(times), 0);
-  // The report is there all the same.
+  // There is a report nevertheless.
   EXPECT_TRUE(fs::exists(live.folder + "/estimates-replayed.lcmlog"));
   EXPECT_TRUE(fs::exists(live.folder + "/report.html"));
 }
 
-TEST(Record, ARecorderThatIsKilledLeavesAllButTheLastSecond) {
+TEST(Record, AKilledRecorderLosesAtMostASecond) {
   std::string why;
   if (no_multicast(why)) GTEST_SKIP() << why;
   std::int64_t killed_us = 0;
@@ -129,7 +129,7 @@ TEST(Record, AnswersToCommandsFromAnotherTerminal) {
   const auto send = [](const char* verb) {
     return test::Child({FRAMEWATCH_PROGRAM, "record", test::table_config(), "--send", verb}).wait();
   };
-  EXPECT_EQ(send("start"), 1);  // nobody there
+  EXPECT_EQ(send("start"), 1);  // no daemon
   const LiveSession live({"--standby", "--no-report"}, [&](test::Child&, test::Child& recorder) {
     EXPECT_EQ(send("stop"), 1);
     session_command_t forged{};
@@ -153,7 +153,7 @@ TEST(Record, AnswersToCommandsFromAnotherTerminal) {
   ::unsetenv("XDG_RUNTIME_DIR");
 }
 
-TEST(Record, RefusesWhatCannotBe) {
+TEST(Record, RefusesImpossibleRequests) {
   RecordArguments a;
   a.config = "/nonexistent.toml";
   EXPECT_EQ(record(a), 2);
@@ -163,7 +163,7 @@ TEST(Record, RefusesWhatCannotBe) {
   a.request.length_s = 0;
   a.url = "bogus://";
   EXPECT_EQ(record(a), 2);
-  a.send = "start";  // does not go over LCM
+  a.send = "start";  // a session command that is not sent over LCM
   EXPECT_EQ(record(a), 2);
   a.send.clear();
   a.finish = "/nonexistent";

@@ -19,7 +19,7 @@
 
 namespace framewatch::test {
 
-/// The configuration of the simulated table.
+/// Returns the configuration of the simulated table.
 inline daemon::Config table_configuration() {
   std::vector<daemon::ConfigProblem> problems;
   auto config = daemon::load_config(table_config(), problems);
@@ -27,7 +27,7 @@ inline daemon::Config table_configuration() {
   return *config;
 }
 
-/// A recorder without LCM: time is what the messages say.
+/// A recorder without LCM; messages set its time.
 struct RecorderBench {
   TemporaryDirectory directory;
   daemon::Config config = table_configuration();
@@ -35,7 +35,7 @@ struct RecorderBench {
   daemon::Recorder recorder{config, directory.path("sessions"),
                             [this](const std::string& folder) { ended.push_back(folder); }};
 
-  /// Base channels at a level from `from_s` to `to_s`; the rest rests.
+  /// Moves the base channels at a level from `from_s` to `to_s`; other channels rest.
   void play(double from_s, double to_s, const std::function<double(double)>& base) {
     for (auto i = std::llround(100 * from_s); i < std::llround(100 * to_s); ++i) {
       const double t = 0.01 * static_cast<double>(i);
@@ -50,7 +50,7 @@ struct RecorderBench {
   }
 };
 
-/// Sensor times of all samples of a log.
+/// Returns the sensor times of all samples of a log.
 inline std::vector<std::int64_t> times_of(const std::string& log) {
   std::vector<std::int64_t> out;
   drivers::LcmLogReader reader;

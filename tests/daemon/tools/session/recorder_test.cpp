@@ -23,8 +23,8 @@ namespace framewatch::daemon {
 namespace recorder_test {
 
 // Limits.
-constexpr std::int64_t kInstant_us = 10'000;          // what a trigger may be late by
-constexpr std::int64_t kOverPreTrigger_us = 700'000;  // stored from before the pre-trigger
+constexpr std::int64_t kInstant_us = 10'000;          // largest delay of a trigger
+constexpr std::int64_t kOverPreTrigger_us = 700'000;  // samples from before the pre-trigger time
 
 using drivers::LcmLogReader;
 using drivers::LogEvent;
@@ -34,7 +34,7 @@ double at_rest(double t) {
   return 1e-3 * std::sin(50 * t);
 }
 
-TEST(Recorder, ATriggerBringsTheSecondsBeforeItAndEndsAtItsLength) {
+TEST(Recorder, ATriggerRecordsTheSecondsBeforeItAndEndsAtItsLength) {
   test::RecorderBench b;
   b.play(0, 4, at_rest);
   ASSERT_TRUE(b.recorder.checked());
@@ -60,7 +60,7 @@ TEST(Recorder, ATriggerBringsTheSecondsBeforeItAndEndsAtItsLength) {
   EXPECT_EQ(session->ended_by, "length");
   EXPECT_EQ(session->messages, static_cast<std::int64_t>(times.size()));
   EXPECT_EQ(session->lost + session->dropped, 0);
-  // Every sample of every node in between.
+  // Contains every sample of every node in between.
   std::map<std::int64_t, int> nodes;
   for (const std::int64_t t : times) ++nodes[t];
   for (std::int64_t t = times.front() + kInstant_us; t < times.back(); t += kInstant_us)
@@ -69,7 +69,7 @@ TEST(Recorder, ATriggerBringsTheSecondsBeforeItAndEndsAtItsLength) {
   EXPECT_LT(session->check[0].peak, 0.01);
 }
 
-TEST(Recorder, ATemperatureStandsAmongTheSamples) {
+TEST(Recorder, StoresATemperatureAmongTheSamples) {
   test::RecorderBench b;
   b.config.watch.emplace().temperature_channel = "OUTSIDE";
   const auto channels = b.recorder.channels();
@@ -94,7 +94,7 @@ TEST(Recorder, ATemperatureStandsAmongTheSamples) {
   EXPECT_EQ(after, 1000);
 }
 
-TEST(Recorder, CommandsAreObeyedOnceAndRefusedWithAReason) {
+TEST(Recorder, ObeysCommandsOnceAndRefusesWithAReason) {
   test::RecorderBench b;
   b.play(0, 4, at_rest);
   session_command_t c{};
@@ -117,7 +117,7 @@ TEST(Recorder, CommandsAreObeyedOnceAndRefusedWithAReason) {
   EXPECT_NE(tell(7, "start", 0), "");
   EXPECT_NE(tell(8, "tap", 0), "");
   EXPECT_EQ(tell(9, "stop", 0), "");
-  EXPECT_EQ(tell(9, "stop", 0), "");  // sent again, not done again
+  EXPECT_EQ(tell(9, "stop", 0), "");  // sent again, but not obeyed again
   b.play(4, 5, at_rest);
   EXPECT_EQ(b.recorder.state(), RecorderState::waiting);
   ASSERT_EQ(b.ended.size(), 1u);
@@ -133,7 +133,7 @@ TEST(Recorder, ATapTestFindsTheReversedChannel) {
   b.play(0, 4, at_rest);
   ASSERT_EQ(b.recorder.tap(), "");
   b.play(4, 6, [](double t) { return t >= 5 && t < 5.02 ? -1.0 : at_rest(t); });
-  // Both base channels felt it alike.
+  // Both base channels felt it equally.
   EXPECT_NE(b.recorder.news().find("next to one sensor"), std::string::npos) << b.recorder.news();
   for (const double at_s : {6.0, 7.0}) {
     for (auto i = std::llround(100 * at_s); i < std::llround(100 * at_s) + 100; ++i)

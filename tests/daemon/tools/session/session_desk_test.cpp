@@ -23,7 +23,7 @@ namespace session_desk_test {
 struct DeskBench : test::RecorderBench {
   DeskBench() { config.commands.directory = directory.path("commands"); }
 
-  /// What the recorder answers, while it looks after its desk.
+  /// Runs the recorder's desk and returns its answers.
   CommandAnswer give(SessionDesk& desk, const CommandPacket& command) const {
     auto answer = std::async(std::launch::async, give_command, config, "record", command);
     while (answer.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) desk.poll();
@@ -35,7 +35,7 @@ session_command_t command(const std::string& verb) {
   return session_command(verb, {"test", "me", "", 0, 0, 0});
 }
 
-TEST(SessionDesk, ACommandOverTheSocketIsObeyedAndAnswered) {
+TEST(SessionDesk, ObeysAndAnswersACommandOverTheSocket) {
   DeskBench b;
   SessionDesk desk(b.config, b.recorder);
   const session_command_t stop = command("stop"), start = command("start");
@@ -53,7 +53,7 @@ TEST(SessionDesk, ACommandOverTheSocketIsObeyedAndAnswered) {
   EXPECT_NE(b.give(desk, {"SESSION_COMMAND", {1, 2, 3}}).problem, "");
 }
 
-TEST(SessionDesk, ADatagramIsCountedAndObeyedWhereTheConfigurationSaysSo) {
+TEST(SessionDesk, CountsDatagramsAndObeysThemIfConfigured) {
   DeskBench b;
   SessionDesk desk(b.config, b.recorder);
   EXPECT_EQ(desk.channel(), "FRAMEWATCH_SESSION_COMMAND");
@@ -72,7 +72,7 @@ TEST(SessionDesk, ADatagramIsCountedAndObeyedWhereTheConfigurationSaysSo) {
   EXPECT_EQ(b.recorder.state(), RecorderState::recording);
 }
 
-TEST(SessionDesk, AVerbThatIsNoneIsShownWithoutItsControls) {
+TEST(SessionDesk, EscapesAnUnknownCommand) {
   DeskBench b;
   SessionDesk desk(b.config, b.recorder);
   const auto answer = b.give(desk, {"SESSION_COMMAND", drivers::encoded(command("\x1b[2J\n"))});

@@ -43,7 +43,7 @@ std::string recorded(test::RecorderBench& b, bool estimates) {
   return b.ended.at(0);
 }
 
-TEST(FinishSession, StagesReportAndOtherFormats) {
+TEST(FinishSession, WritesReportAndOtherFormatsInStages) {
   test::RecorderBench b;
   const std::string folder = recorded(b, true);
   EXPECT_EQ(finish_session({test::table_config(), folder, "", true, true, true, true, true}), 0);
@@ -60,7 +60,7 @@ TEST(FinishSession, StagesReportAndOtherFormats) {
     EXPECT_GT(fs::file_size(folder + "/" + file), 100u) << file;
   for (const char* name : {"raw.csv", "raw.mat", "estimates.csv", "estimates.mat"})
     EXPECT_TRUE(fs::exists(folder + "/" + name)) << name;
-  // The stages together are the raw log.
+  // The joined stages equal the raw log.
   std::size_t samples = 0;
   for (const auto& file : fs::directory_iterator(folder))
     if (file.path().filename().string().starts_with("stage-"))
@@ -68,7 +68,7 @@ TEST(FinishSession, StagesReportAndOtherFormats) {
   EXPECT_EQ(samples, test::times_of(folder + "/raw.lcmlog").size());
 }
 
-TEST(FinishSession, MissingEstimatesAreMadeAgain) {
+TEST(FinishSession, ComputesMissingEstimates) {
   test::RecorderBench b;
   const std::string folder = recorded(b, false);
   EXPECT_EQ(finish_session({test::table_config(), folder, "", false, false, false, true, true}), 0);
@@ -78,7 +78,7 @@ TEST(FinishSession, MissingEstimatesAreMadeAgain) {
             fs::file_size(folder + "/estimates-replayed.lcmlog"));
 }
 
-TEST(FinishSession, AReportThatCannotBeWrittenCostsNoLog) {
+TEST(FinishSession, KeepsTheLogIfTheReportFails) {
   test::RecorderBench b;
   const std::string folder = recorded(b, true);
   const std::string raw = test::read_file(folder + "/raw.lcmlog");
@@ -91,7 +91,7 @@ TEST(FinishSession, AReportThatCannotBeWrittenCostsNoLog) {
   ASSERT_TRUE(session) << error;
   EXPECT_FALSE(session->finishing.empty());
   EXPECT_EQ(session->report, "");
-  // Later, with a disk.
+  // Later, with a working disk.
   EXPECT_EQ(finish_session({test::table_config(), folder, "", false, false, false, true, true}), 0);
   EXPECT_TRUE(fs::exists(folder + "/report.html"));
   const auto again = read_session_file(folder + "/session.json", error);
@@ -100,7 +100,7 @@ TEST(FinishSession, AReportThatCannotBeWrittenCostsNoLog) {
   EXPECT_EQ(again->files, (std::vector<std::string>{"estimates.lcmlog", "raw.lcmlog"}));
 }
 
-TEST(SessionFile, ReadsWhatItWritesAndRefusesWhatIsNone) {
+TEST(SessionFile, ReadsBackItsTextAndRefusesOthers) {
   SessionFile s;
   s.state = "recorded";
   s.request = {"a \"test\"\n", "me", "ü", 10, 0.2, 5};

@@ -91,7 +91,7 @@ TEST(Scenario, DefaultsRun) {
   EXPECT_NEAR(std::hypot(r.scenario->motion.x.peak(), r.scenario->motion.y.peak()), 2, 1e-9);
 }
 
-TEST(Scenario, TruthGoesOverTheDesign) {
+TEST(Scenario, TruthOverridesTheDesign) {
   const Reading r = read("", "[truth]\nkx_npm = [[22e3, 27e3]]\ngc = [[[12.5]]]\n");
   ASSERT_TRUE(r.scenario) << r.all();
   const Scenario& s = *r.scenario;
@@ -103,7 +103,7 @@ TEST(Scenario, TruthGoesOverTheDesign) {
   EXPECT_GT(ratio, 0);
 }
 
-TEST(Scenario, ChangesMultiplyInTheOrderOfTime) {
+TEST(Scenario, ChangesMultiplyInOrderOfTime) {
   const Reading r = read("", R"(
 [[change]]
 at_s = 20
@@ -145,7 +145,7 @@ dead_from_s = 12
   EXPECT_EQ(s.sensors[2].dead_from_s, 12);
 }
 
-TEST(Scenario, NoiseRatioIsOfTheChannelsRms) {
+TEST(Scenario, NoiseRatioRefersToTheChannelsRms) {
   Reading noisy = read("duration_s = 20\n", "[sensors]\nnoise_ratio = 0.1\n");
   Reading clean = read("duration_s = 20\n", "");
   ASSERT_TRUE(noisy.scenario && clean.scenario) << noisy.all();
@@ -172,7 +172,7 @@ TEST(Scenario, ReadsARecordedMotion) {
   EXPECT_NEAR(r.scenario->duration_s, 38, 1e-9);
 }
 
-TEST(Scenario, TellsEveryProblemAtOnceWithItsPlace) {
+TEST(Scenario, ReportsEveryProblemWithItsPlace) {
   const Reading r = read("sed = 3\n", R"(
 [motion]
 peak = 3
@@ -190,7 +190,7 @@ channel = "F9-Y1"
   EXPECT_TRUE(r.says("s.toml:", "F9-Y1")) << r.all();
 }
 
-TEST(Scenario, RefusesWhatCannotBe) {
+TEST(Scenario, RefusesImpossibleValues) {
   EXPECT_TRUE(read("", "[sensors]\nbits = 16\n").says("s.toml:", "full scale"));
   EXPECT_TRUE(read("", "[truth]\nkx_npm = [[1e3, 2e3, 3e3]]\n").says("s.toml:", "kx_npm"));
   EXPECT_TRUE(read("", "[truth]\nkx_npm = \"soft\"\n").says("s.toml:", "kx_npm"));
@@ -198,7 +198,7 @@ TEST(Scenario, RefusesWhatCannotBe) {
   EXPECT_TRUE(read("", "[wind]\nspeed = 1\n").says("s.toml:", "wind"));
   EXPECT_TRUE(read("", "[change]\nat_s = 1\n").says("s.toml:", "[[change]]"));
   EXPECT_TRUE(read("", "[motion]\nfile = \"no-such.csv\"\n").says("", "no-such.csv"));
-  // A motion of 1e8 samples, of which two seconds are wanted, took minutes.
+  // Reading two seconds of a motion of 1e8 samples took minutes.
   EXPECT_TRUE(read("", "[motion]\nlength_s = 1e6\n").says("s.toml:", "length_s"));
   EXPECT_TRUE(read("config = \"other.toml\"\n", "").says("s.toml:", "only one of both"));
   EXPECT_TRUE(read("rate_hz = [\n", "").says("s.toml:", ""));
@@ -208,7 +208,7 @@ TEST(Scenario, RefusesWhatCannotBe) {
   EXPECT_EQ(problems[0].where, "/no/such/file.toml");
 }
 
-TEST(Scenario, WhatIsTooLongOrTooLargeIsRefusedBeforeMemoryIsTaken) {
+TEST(Scenario, RefusesTooLongOrTooLargeRunsBeforeAllocating) {
   EXPECT_TRUE(read("duration_s = 1e6\nrate_hz = 100000\n", "").says("s.toml:1", "1e+11 instants"));
   EXPECT_TRUE(read("", "[motion]\nlength_s = 1e6\n").says("s.toml", "motion.length_s"));
   const test::TemporaryDirectory directory;
@@ -232,7 +232,7 @@ TEST(Scenario, WhatIsTooLongOrTooLargeIsRefusedBeforeMemoryIsTaken) {
       << high.all();
 }
 
-TEST(Scenario, TheBuildingMayStandInAFileOfItsOwn) {
+TEST(Scenario, TheBuildingMayBeInASeparateFile) {
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("house.toml"), kBuilding);
   test::write_file(directory.path("shake.toml"), "config = \"house.toml\"\nduration_s = 3\n");

@@ -49,7 +49,7 @@ TEST(Simulate, MayWriteAndSendAtOnce) {
   EXPECT_EQ(directory.names(), std::vector<std::string>{"rec.lcmlog"});
 }
 
-TEST(Simulate, BadInputIsExitTwoWithNothingWritten) {
+TEST(Simulate, BadInputExitsTwoAndWritesNothing) {
   const test::TemporaryDirectory directory;
   const std::string out = directory.path("rec.csv");
   test::write_file(directory.path("bad.toml"), "config = \"nowhere.toml\"\nsed = 3\n");

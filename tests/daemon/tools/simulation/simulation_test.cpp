@@ -93,7 +93,7 @@ void count_message(const lcm::ReceiveBuffer*, const std::string&, int* received)
   ++*received;
 }
 
-TEST(Simulation, SendsLiveAtItsSpeed) {
+TEST(Simulation, SendsLiveAtTheRequestedSpeed) {
   const Scenario s = small_scenario();
   lcm::LCM lcm("memq://");
   int samples = 0, tables = 0;
@@ -115,7 +115,7 @@ TEST(Simulation, SendsLiveAtItsSpeed) {
   EXPECT_EQ(tables, 2);
 }
 
-TEST(Simulation, AxesWithoutSourceGetNodesOfTheirOwn) {
+TEST(Simulation, AxesWithoutASourceGetNewNodes) {
   const auto at = addresses({{"", -1, 0}, {"ROOF", 7, 2}, {"", -1, 0}});
   EXPECT_EQ(at[0].node, 8);
   EXPECT_EQ(at[1].lcm_channel, "ROOF");
@@ -125,7 +125,7 @@ TEST(Simulation, AxesWithoutSourceGetNodesOfTheirOwn) {
   EXPECT_EQ(at[2].lcm_channel, "ACCEL");
 }
 
-TEST(Simulation, RefusesAFileItDoesNotKnow) {
+TEST(Simulation, RefusesAnUnknownFileFormat) {
   const test::TemporaryDirectory directory;
   std::string error;
   EXPECT_FALSE(file_output(small_scenario(), directory.path("rec.xlsx"), error));

@@ -48,7 +48,7 @@ TEST_F(Assembly, JoinsPartsInAnyOrder) {
   EXPECT_EQ(assembly_.unfinished(), 0);
 }
 
-TEST_F(Assembly, SendersDoNotMix) {
+TEST_F(Assembly, KeepsSendersApart) {
   EXPECT_EQ(add(part(1, 6, 0, 0, 2, kFirst), {1, 1}), Outcome::waits);
   EXPECT_EQ(add(part(1, 6, 0, 0, 2, kFirst), {1, 2}), Outcome::waits);
   EXPECT_EQ(add(part(1, 6, 3, 1, 2, "xyz"), {1, 2}), Outcome::whole);
@@ -57,7 +57,7 @@ TEST_F(Assembly, SendersDoNotMix) {
   EXPECT_EQ(payload(), "abcdef");
 }
 
-TEST_F(Assembly, ASendersNextMessageGivesTheUnfinishedOneUp) {
+TEST_F(Assembly, DropsAnUnfinishedMessageWhenTheNextBegins) {
   EXPECT_EQ(add(part(1, 6, 0, 0, 2, kFirst)), Outcome::waits);
   EXPECT_EQ(add(part(2, 6, 0, 0, 2, kFirst)), Outcome::waits);
   EXPECT_EQ(assembly_.unfinished(), 1);
@@ -65,7 +65,7 @@ TEST_F(Assembly, ASendersNextMessageGivesTheUnfinishedOneUp) {
   EXPECT_EQ(assembly_.bytes(), 0u);
 }
 
-TEST_F(Assembly, RefusesPartsThatOverlapOrLeaveAHole) {
+TEST_F(Assembly, RefusesOverlapsAndHoles) {
   EXPECT_EQ(add(part(1, 7, 0, 0, 2, kFirst)), Outcome::waits);
   EXPECT_EQ(add(part(1, 7, 4, 1, 2, "efg")), Outcome::refused);  // the fourth byte is missing
   EXPECT_EQ(add(part(2, 6, 0, 0, 2, kFirst)), Outcome::waits);
@@ -75,14 +75,14 @@ TEST_F(Assembly, RefusesPartsThatOverlapOrLeaveAHole) {
   EXPECT_EQ(assembly_.bytes(), 0u);
 }
 
-TEST_F(Assembly, APartThatComesTwiceChangesNothing) {
+TEST_F(Assembly, IgnoresARepeatedPart) {
   EXPECT_EQ(add(part(1, 6, 0, 0, 2, kFirst)), Outcome::waits);
   EXPECT_EQ(add(part(1, 6, 0, 0, 2, kFirst)), Outcome::refused);
   EXPECT_EQ(add(part(1, 6, 3, 1, 2, "def")), Outcome::whole);
   EXPECT_EQ(payload(), "abcdef");
 }
 
-TEST_F(Assembly, KeepsNothingOfUnwantedChannels) {
+TEST_F(Assembly, IgnoresUnwantedChannels) {
   EXPECT_EQ(add(part(1, 200'000, 0, 0, 4, std::string("OTHER\0", 6) + std::string(60'000, 'x'))),
             Outcome::unwanted);
   EXPECT_EQ(add(part(1, 200'000, 60'000, 1, 4, std::string(60'000, 'x'))), Outcome::unwanted);
@@ -94,13 +94,13 @@ TEST_F(Assembly, KeepsNothingOfUnwantedChannels) {
   EXPECT_EQ(assembly_.unfinished(), 0);
 }
 
-TEST_F(Assembly, TakesMemoryForBytesThatCameOnly) {
+TEST_F(Assembly, TakesMemoryOnlyForReceivedBytes) {
   EXPECT_EQ(add(part(1, 1u << 28, 0, 0, 65535, kFirst)), Outcome::refused);
   EXPECT_EQ(add(part(2, FragmentAssembly::kMaxMessageBytes, 0, 0, 65535, kFirst)), Outcome::waits);
   EXPECT_LT(assembly_.bytes(), 1000u);
 }
 
-TEST_F(Assembly, IsBoundedWhateverComes) {
+TEST_F(Assembly, IsBoundedForAnyInput) {
   std::mt19937 random(2);
   const std::string body(60'000, 'x');
   for (std::uint32_t i = 0; i < 5000; ++i) {

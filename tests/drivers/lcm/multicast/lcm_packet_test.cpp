@@ -30,7 +30,7 @@ TEST(LcmPacket, ReadsAWholeMessage) {
   EXPECT_EQ(packet->parts, 1);
 }
 
-TEST(LcmPacket, ReadsTheFirstPartAndTheOthers) {
+TEST(LcmPacket, ReadsEveryPartOfAMessage) {
   const Bytes first = part(9, 3000, 0, 0, 3, std::string("ACCEL\0abc", 9));
   const Bytes second = part(9, 3000, 3, 1, 3, "defg");
   const auto a = parse_lcm_packet(first), b = parse_lcm_packet(second);
@@ -63,7 +63,7 @@ TEST(LcmPacket, RefusesPartsThatLieOutsideTheirMessage) {
   EXPECT_FALSE(parse_lcm_packet(part(77, 3000, 0, 0, 0, std::string("A\0a", 3))));
 }
 
-TEST(LcmPacket, RefusesWhatIsCutAnywhereOrIsNoLcm) {
+TEST(LcmPacket, RefusesTruncatedAndForeignPackets) {
   for (const Bytes& bytes : {whole(1, "ACCEL", ""), part(9, 30, 0, 0, 3, std::string("ACCEL\0", 6)),
                              part(9, 30, 3, 1, 3, "")}) {
     for (std::size_t size = 0; size < bytes.size(); ++size)
@@ -75,7 +75,7 @@ TEST(LcmPacket, RefusesWhatIsCutAnywhereOrIsNoLcm) {
   EXPECT_FALSE(parse_lcm_packet(foreign));
 }
 
-TEST(LcmPacket, WhatItTakesOfAnyBytesLiesWithinThem) {
+TEST(LcmPacket, NeverReadsBeyondItsBytes) {
   std::mt19937 random(1);
   for (int trial = 0; trial < 200'000; ++trial) {
     Bytes bytes = trial % 2 == 0 ? whole(1, "ACCEL", "some payload")

@@ -63,7 +63,7 @@ std::string text(const ReceivedMessage& message) {
   return {message.payload.begin(), message.payload.end()};
 }
 
-TEST_F(Receiver, TakesItsChannelsAndNoOthers) {
+TEST_F(Receiver, TakesOnlyItsChannels) {
   sender_.send(whole(1, "WANTED", "a"));
   sender_.send(whole(2, "OTHER", "b"));
   sender_.send(whole(3, "WANTED2", "c"));
@@ -99,7 +99,7 @@ TEST_F(Receiver, HearsLiblcmsShortAndLongMessages) {
   EXPECT_TRUE(came == sent) << came.size();
 }
 
-TEST_F(Receiver, DatagramsThatKilledLiblcmAreCountedAndHarmless) {
+TEST_F(Receiver, CountsAndSurvivesDatagramsThatCrashLiblcm) {
   sender_.send(part(77, 3000, 0, 0, 3, std::string("WANTED\0", 7) + std::string(100, 'A')));
   sender_.send(part(77, 3000, 0xFFFFFF00, 1, 3, std::string(0x200, 'B')));
   packets::Bytes bad_magic = whole(5, "WANTED", std::string(80, 'z'));
@@ -136,7 +136,7 @@ TEST_F(Receiver, AFullQueueDropsAndCounts) {
   EXPECT_EQ(receiver_->counters().queue_full, 90);
 }
 
-TEST_F(Receiver, SaysWhichInterfacesThereAre) {
+TEST_F(Receiver, ListsTheInterfaces) {
   LcmReceiver receiver({"WANTED"}, 10);
   std::string error;
   EXPECT_FALSE(receiver.open(group({"lo", "eth77"}), error));
@@ -181,7 +181,7 @@ class OtherHost {
   int process_ = 0;
 };
 
-TEST_F(Receiver, TakesFromOtherHostsOnlyOverNamedInterfaces) {
+TEST_F(Receiver, HearsOtherHostsOnlyOverNamedInterfaces) {
   const OtherHost other;
   if (!other.there()) GTEST_SKIP() << "no second network namespace here";
   LcmReceiver open({"WANTED"}, 10);
@@ -205,7 +205,7 @@ TEST_F(Receiver, TakesFromOtherHostsOnlyOverNamedInterfaces) {
   EXPECT_EQ(text(messages[0]), "our own");
 }
 
-TEST_F(Receiver, HearsThisMachineWhereverTheGroupsRouteLeadsAndNobodyElse) {
+TEST_F(Receiver, HearsOnlyThisMachineWhateverTheRoute) {
   const OtherHost other;
   if (!other.there()) GTEST_SKIP() << "no second network namespace here";
   ASSERT_EQ(std::system(fmt::format("ip route replace {}/32 dev v0", kTestGroup).c_str()), 0);

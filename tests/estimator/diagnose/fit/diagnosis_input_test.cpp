@@ -19,7 +19,7 @@ std::vector<RecordSamples> one_record(const Small& small) {
   return {{kRate_hz, small.record({}, 1), 0}};
 }
 
-TEST(DiagnosisInput, KeepsTheDesignThatIsGiven) {
+TEST(DiagnosisInput, KeepsAGivenDesign) {
   const Small small;
   const auto input =
       diagnosis_input(small.structure, small.axes, small.design, {}, one_record(small));
@@ -48,7 +48,7 @@ TEST(DiagnosisInput, NeedsEveryMotionOfTheEquations) {
   EXPECT_FALSE(diagnosis_input(small.structure, small.axes, small.design, {}, records));
 }
 
-TEST(DiagnosisInput, RecordsAreTooShortOrWithoutExcitation) {
+TEST(DiagnosisInput, RefusesShortRecordsAndThoseWithoutExcitation) {
   const Small small;
   std::vector<RecordSamples> records = one_record(small);
   const auto fault = [&] {
@@ -73,7 +73,7 @@ Eigen::MatrixXd with_late_floors(const Eigen::MatrixXd& record, Eigen::Index lat
   return out;
 }
 
-TEST(DiagnosisInput, FloorsHaveTheClockOfTheBase) {
+TEST(DiagnosisInput, AlignsFloorsWithTheClockOfTheBase) {
   Small small;
   const Eigen::MatrixXd whole = small.record({}, 1);
   const auto offsets = [&](Eigen::Index late) {

@@ -116,7 +116,7 @@ std::vector<ModelEffect> one_of_every_form() {
 INSTANTIATE_TEST_SUITE_P(OfEveryForm, FitColumns,
                          testing::Range(std::size_t{0}, one_of_every_form().size()));
 
-TEST(FitColumnsOfRecords, OnlyARecordsOwnValuesMoveIt) {
+TEST(FitColumnsOfRecords, DependOnlyOnTheRecordsOwnValues) {
   const Small small;
   const Plant plant = small.plant();
   const std::vector<RecordSegment> segments = small.segments({small.record({}, 1)});
@@ -153,7 +153,7 @@ Unknown unknown_of(Kind kind, int index) {
   return out;
 }
 
-TEST(RunColumns, WhatMovesARunIsAlongItsLaws) {
+TEST(RunColumns, OnlyUnknownsNextToALawMoveARun) {
   Case c;
   const auto moves = [&](Kind kind, int index) {
     return moves_run(c.plant, c.model, unknown_of(kind, index));
@@ -212,7 +212,7 @@ TEST(RunColumns, AreTheDerivativesOfTheRun) {
   }
 }
 
-TEST(RunColumns, ThereIsNoneWhereTheChangedModelRunsAway) {
+TEST(RunColumns, DoNotExistIfTheChangedModelDiverges) {
   Case c;
   const RecordSegment segment = c.small.segments({test::exact_record(c.small, {}, 1)}).front();
   c.model.effects = {test::effect_of(LawForm::power, test::frame_place(kFrame), {0, 1})};

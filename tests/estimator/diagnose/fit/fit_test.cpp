@@ -34,7 +34,7 @@ Model with_mass(const Plant& plant) {
   return out;
 }
 
-TEST(Fit, MayHoldWhatIsTolerated) {
+TEST(Fit, HoldsToleratedErrorsOnRequest) {
   const Small small;
   const Plant plant = small.plant();
   const std::vector<RecordSegment> segments = small.segments({small.record({}, 1)});
@@ -56,7 +56,7 @@ TEST(Fit, MayHoldWhatIsTolerated) {
 }
 
 /// With a wrong gradient a fit creeps, and its residual looks like an effect.
-TEST(Fit, GradientIsThatOfTheMisfit) {
+TEST(Fit, GradientMatchesTheMisfit) {
   constexpr double kStep = 0.01;       // of an unknown's deviation
   constexpr double kTolerance = 2e-3;  // of the largest along one deviation
   const Small small;
@@ -84,7 +84,7 @@ TEST(Fit, GradientIsThatOfTheMisfit) {
   }
 }
 
-TEST(Fit, StepsStayWithinBoundsAndTheOthersMakeTheBestOfIt) {
+TEST(Fit, StepsStayWithinBoundsAndOtherUnknownsAdapt) {
   Model model;
   model.theta = Eigen::Vector3d(1, 1, 1);
   std::vector<Unknown> unknowns;
@@ -106,7 +106,7 @@ TEST(Fit, StepsStayWithinBoundsAndTheOthersMakeTheBestOfIt) {
   EXPECT_NEAR(step[2], others[1], 1e-12);
 }
 
-TEST(Fit, NoElementIsFittedThatDoesNotDissipate) {
+TEST(Fit, FitsNoElementThatAddsEnergy) {
   Small small;
   small.truth.tail(small.table.elements())[0] *= -0.5;
   small.design = small.truth.cwiseAbs();

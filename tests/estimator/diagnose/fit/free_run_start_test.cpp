@@ -14,7 +14,7 @@ constexpr double kWithin = 1.25;  // tried forces differ by factors of 1.09
 
 class FrictionStart : public testing::TestWithParam<double> {};
 
-TEST_P(FrictionStart, OfFrictionThatSticksIsNearItsForce) {
+TEST_P(FrictionStart, IsNearTheForceOfStickingFriction) {
   const double force_n = GetParam();
   const EffectPlace place = test::in_frame(kFrame);
   Effect hidden = make_effect(EffectKind::coulomb_friction, place);

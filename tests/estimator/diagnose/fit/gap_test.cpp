@@ -25,7 +25,7 @@ struct Case {
   }
 };
 
-TEST(Gap, OfTheTrueModelIsThatOfTheNoise) {
+TEST(Gap, EqualsTheNoiseForTheTrueModel) {
   constexpr double kTolerance = 0.25, kOfAll = 0.12;
   const Case c;
   const Gap gap = c.gap(c.small.record({}, 1), c.model);
@@ -41,7 +41,7 @@ TEST(Gap, OfTheTrueModelIsThatOfTheNoise) {
   EXPECT_EQ(gap.axis[gap.worst_axis], gap.worst);
 }
 
-TEST(Gap, WithoutNoiseIsNothing) {
+TEST(Gap, VanishesWithoutNoise) {
   constexpr double kOfFloor = 0.1;
   const Case c;
   const Gap gap = c.gap(test::exact_record(c.small, {}, 1), c.model);
@@ -63,7 +63,7 @@ TEST(Gap, FallsWithTheNoise) {
   EXPECT_NEAR(floor() / before, 2, kTolerance);
 }
 
-TEST(Gap, AReadingThatIsWrongStandsOutUntilTheModelHasIt) {
+TEST(Gap, ShowsAWrongReadingUntilTheModelIncludesIt) {
   constexpr double kGain = 0.1, kTolerance = 0.1;
   constexpr int kAxis = 1;
   Case c;
@@ -77,7 +77,7 @@ TEST(Gap, AReadingThatIsWrongStandsOutUntilTheModelHasIt) {
   EXPECT_LT(after.overall, (1 + kTolerance) * after.overall_floor);
 }
 
-TEST(Gap, ALawClosesItsOwn) {
+TEST(Gap, ClosesWhenTheModelIncludesTheLaw) {
   constexpr double kShows = 3, kNear = 1.15;  // times the floor
   const Case c;
   const test::EffectTwins twins = test::cubic_spring(2, 2e11);
@@ -88,7 +88,7 @@ TEST(Gap, ALawClosesItsOwn) {
   EXPECT_LT(after.overall, kNear * after.overall_floor);
 }
 
-TEST(Gap, ForcesThatMayBeAnythingExplainTheirNode) {
+TEST(Gap, FreeForcesExplainTheirNode) {
   constexpr double kShows = 3, kNear = 1.2;
   const Case c;
   const auto node = test::node_place(2);
@@ -104,7 +104,7 @@ TEST(Gap, ForcesThatMayBeAnythingExplainTheirNode) {
   EXPECT_LT(after.overall, kNear * after.overall_floor);
 }
 
-TEST(Gap, AClippedReadingIsComparedAsItWouldRead) {
+TEST(Gap, ComparesAClippedReadingWithAClippedModel) {
   constexpr double kBetter = 0.3;
   constexpr int kAxis = 0;
   const Case c;

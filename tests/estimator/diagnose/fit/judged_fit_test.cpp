@@ -117,7 +117,7 @@ struct Case {
   explicit Case(const MatrixXd& record) : segments(small.segments({record})) {}
 };
 
-TEST(JudgedFit, IsAsGoodAsTheBestFreeRunOfItsClass) {
+TEST(JudgedFit, HasTheBestFreeRunOfItsClass) {
   constexpr double kFarAboveNoise = 30;
   for (const double k3 : {2e11, 8e11}) {
     const Case c(Small().record({test::cubic_spring(2, k3).simulated}, 1));
@@ -139,7 +139,7 @@ TEST(JudgedFit, IsAsGoodAsTheBestFreeRunOfItsClass) {
 
 /// Modal ratios that dashpots between floors cannot produce. With a strong cubic spring there are
 /// none.
-TEST(JudgedFit, DampingMayBeNoneOfDashpots) {
+TEST(JudgedFit, AllowsDampingThatDashpotsCannotProduce) {
   constexpr double kClearly = 0.97;
   for (const bool of_modes : {true, false}) {
     Small small = test::tower(2);
@@ -172,7 +172,7 @@ TEST(JudgedFit, DampingMayBeNoneOfDashpots) {
   }
 }
 
-TEST(JudgedFit, NearTheNoiseIsTheLikeliestModel) {
+TEST(JudgedFit, IsTheLikeliestModelNearTheNoise) {
   const Case c(Small().record({}, 1));
   const Fitter fitter(c.plant, c.segments, kExact);
   const JudgedFit judged = judged_fit(fitter, {initial_model(c.plant)}, FitOptions{}.max_steps);
@@ -183,7 +183,7 @@ TEST(JudgedFit, NearTheNoiseIsTheLikeliestModel) {
   EXPECT_LT(judged.gap, 1.2 * gaps_of(fitter, judged.model).front().overall_floor);
 }
 
-TEST(ModelError, IsAShareOfTheMotionOfTheOutputs) {
+TEST(ModelError, IsRelativeToTheMotionOfTheOutputs) {
   constexpr double kShare = 0.3, kSmall = 1e-9;
   const Case c(Small().record({}, 1));
   const RecordSegment &before = c.segments.front(),

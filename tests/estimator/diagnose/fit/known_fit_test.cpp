@@ -24,7 +24,7 @@ struct Case {
       : segments(small.segments({record})), fitter(plant, segments, tolerances) {}
 };
 
-TEST(KnownFit, WithoutNoiseTheTruthComesOut) {
+TEST(KnownFit, FindsTheTruthWithoutNoise) {
   constexpr double kTolerance = 5e-3;
   const Case c(test::exact_record(Small(), {}, 1), {0, 0, 0});
   const FitResult fit = c.fitter.fit(initial_model(c.plant), {}, {});
@@ -33,7 +33,7 @@ TEST(KnownFit, WithoutNoiseTheTruthComesOut) {
     EXPECT_NEAR(fit.model.theta[f] / c.small.truth[f], 1, kTolerance) << f;
 }
 
-TEST(KnownFit, AnEffectsValueComesOutOfNoise) {
+TEST(KnownFit, FindsAnEffectsValueInNoise) {
   constexpr double kTolerance = 0.1;
   const test::EffectTwins twins = test::extra_mass(1, 8000);
   const Case c(Small().record({twins.simulated}, 2));
@@ -45,7 +45,7 @@ TEST(KnownFit, AnEffectsValueComesOutOfNoise) {
   EXPECT_LT(fit.cost, c.fitter.fit(start, {}, {Forcing::measured, 0}).cost);
 }
 
-TEST(KnownFit, WithoutStepsAModelStaysAndWhatIsNoNumberIsNotGood) {
+TEST(KnownFit, KeepsAModelWithoutStepsAndRejectsNan) {
   const Case c(Small().record({}, 1));
   Model model = initial_model(c.plant);
   const FitResult fit = c.fitter.fit(model, {}, {Forcing::measured, 0});

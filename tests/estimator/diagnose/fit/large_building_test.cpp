@@ -61,7 +61,7 @@ std::vector<Index> all_of(const Linearised& at) {
   return out;
 }
 
-TEST(LargeBuilding, GradientAndMisfitAreThoseOfAllBins) {
+TEST(LargeBuilding, GradientAndMisfitMatchThoseOfAllBins) {
   constexpr double kRounding = 1e-9;
   const Case c;
   ASSERT_TRUE(c.plant.is_large());
@@ -75,7 +75,7 @@ TEST(LargeBuilding, GradientAndMisfitAreThoseOfAllBins) {
   EXPECT_DOUBLE_EQ(square(count, count), at.systems[0].misfit);
 }
 
-TEST(LargeBuilding, SampledBinsStandForAll) {
+TEST(LargeBuilding, SampledBinsRepresentAllBins) {
   constexpr double kShare = 0.15, kOff = 0.35;
   const Case c;
   const Linearised at = c.linearised(initial_model(c.plant));
@@ -96,7 +96,7 @@ TEST(LargeBuilding, SampledBinsStandForAll) {
 }
 
 /// A resonance narrower than the mean distance of the sampled bins.
-TEST(LargeBuilding, BinsOfANarrowEffectAreAmongTheSampled) {
+TEST(LargeBuilding, SampledBinsIncludeANarrowEffect) {
   constexpr double kOff = 0.1;
   const Case c;
   const double hz =
@@ -119,7 +119,7 @@ TEST(LargeBuilding, BinsOfANarrowEffectAreAmongTheSampled) {
   }
 }
 
-TEST(LargeBuilding, AFitComesToTheNoise) {
+TEST(LargeBuilding, AFitReachesTheNoiseFloor) {
   constexpr double kLow = 0.85, kHigh = 1.03;  // fitted values explain a share of the noise
   const Case c;
   FitOptions options;
@@ -132,7 +132,7 @@ TEST(LargeBuilding, AFitComesToTheNoise) {
 }
 
 /// The modes of twenty stories take seconds, a run much less.
-TEST(LargeBuilding, AStepThroughRunsComputesModesOnce) {
+TEST(LargeBuilding, AStepOfRunsComputesModesOnce) {
   constexpr int kStory = 6, kFrame = 2;
   const Case c;
   EffectPlace place = test::frame_place(kFrame);
@@ -151,7 +151,7 @@ TEST(LargeBuilding, AStepThroughRunsComputesModesOnce) {
   EXPECT_LT(runs, 10);  // of hundreds of unknowns
 }
 
-TEST(LargeBuilding, ThePlaceOfAHiddenLawIsFoundAmongAll) {
+TEST(LargeBuilding, FindsThePlaceOfAHiddenLaw) {
   constexpr int kStory = 6, kFrame = 2;
   EffectPlace place = test::frame_place(kFrame);
   place.story = kStory;

@@ -29,7 +29,7 @@ VectorXd random_signal(Index size, std::uint64_t seed) {
   return out;
 }
 
-TEST(EquivalentElement, OfALinearForceIsTheElement) {
+TEST(EquivalentElement, EqualsALinearElement) {
   constexpr double kStiffness = 3e5, kDamping = -2e3;
   LawTrack track{random_signal(500, 1), random_signal(500, 2), {}};
   track.force = kStiffness * track.d + kDamping * track.v;
@@ -38,7 +38,7 @@ TEST(EquivalentElement, OfALinearForceIsTheElement) {
   EXPECT_NEAR(linear.damping, kDamping, kRounding * kStiffness);
 }
 
-TEST(EquivalentElement, LeavesTheLeastForce) {
+TEST(EquivalentElement, MinimizesTheRemainingForce) {
   LawTrack track{random_signal(500, 1), random_signal(500, 2), {}};
   track.force = track.d.array().cube() + track.v.array().abs();
   const Equivalent linear = equivalent_of(track);
@@ -47,7 +47,7 @@ TEST(EquivalentElement, LeavesTheLeastForce) {
   EXPECT_NEAR(rest.dot(track.v), 0, kRounding * track.force.norm() * track.v.norm());
 }
 
-TEST(EquivalentElement, ThereIsNoneWhereTheMotionDoesNotTell) {
+TEST(EquivalentElement, DoesNotExistIfTheMotionIsInsufficient) {
   const VectorXd moves = random_signal(100, 1), rests = VectorXd::Zero(100);
   for (const auto& [d, v] : {std::pair(rests, rests), std::pair(moves, rests),
                              std::pair(rests, moves), std::pair(moves, VectorXd(-2 * moves))}) {
@@ -57,7 +57,7 @@ TEST(EquivalentElement, ThereIsNoneWhereTheMotionDoesNotTell) {
   }
 }
 
-TEST(EquivalentElement, NothingIsBeyondALinearForce) {
+TEST(EquivalentElement, LeavesNothingOfALinearForce) {
   const VectorXd w = VectorXd::LinSpaced(20, 3, 30);
   const VectorXcd d = VectorXcd::Constant(20, Complex(2e-3, -1e-3));
   const Equivalent linear{4e5, 3e3};
@@ -73,7 +73,7 @@ struct Measured {
   Model model = test::true_model(small, plant);
 };
 
-TEST(HarmonicBins, AreThoseOfItsWaves) {
+TEST(HarmonicBins, MatchTheirWaves) {
   constexpr Index kBin = 12;
   constexpr double kCosine = 300, kSine = -200;
   const Measured m;
@@ -97,7 +97,7 @@ TEST(HarmonicBins, BeginAtTheOnset) {
   EXPECT_EQ(harmonic_bins(force, m.segment, 0).norm(), 0);
 }
 
-TEST(LawTracks, FollowTheMotionThatIsGiven) {
+TEST(LawTracks, FollowTheGivenMotion) {
   constexpr Index kBin = 30;
   constexpr int kFrame = 1;
   constexpr double kAmplitude = 0.4, kStiffness = 2e5;  // m/s^2 of the frame's axis
@@ -120,7 +120,7 @@ TEST(LawTracks, FollowTheMotionThatIsGiven) {
   }
 }
 
-TEST(LawTracks, AreThoseOfElementLawsOnly) {
+TEST(LawTracks, CoverOnlyLawsOfElements) {
   Measured m;
   const auto count = [&](Forcing forcing) {
     const auto tracks = tracks_of(m.plant, m.model, m.segment, 0, forcing, {}, kRatio);

@@ -37,7 +37,7 @@ RecordSegment segment_of(const std::vector<char>& displaced) {
   return make_segment(samples, kRate_hz, Eigen::VectorXd::Constant(2, 1e-6), {0.7, 12}, displaced);
 }
 
-TEST(MeasuredDeformation, OfAPrescribedMotionKeepsWhatIsSlowerThanTheBand) {
+TEST(MeasuredDeformation, KeepsSlowPrescribedMotion) {
   Plant plant = test::Small().plant();
   plant.prescribed = true;
   const RecordSegment s = segment_of({1, 0});
@@ -53,7 +53,7 @@ TEST(MeasuredDeformation, OfAPrescribedMotionKeepsWhatIsSlowerThanTheBand) {
 }
 
 /// Accelerations with a part that is faster than the band.
-TEST(MeasuredDeformation, KeepsWhatIsFasterThanTheBandAndNothingSlower) {
+TEST(MeasuredDeformation, KeepsOnlyMotionFasterThanTheBand) {
   constexpr double kFaster_hz = 20;
   const auto of = [](double slow_mps2, double fast_mps2, double t) {
     return slow_mps2 * std::sin(2 * M_PI * kFast_hz * t) +

@@ -31,7 +31,7 @@ struct Coloured {
   double misfit() const { return now.total_misfit() / recorded.fitter.expected(now.model); }
 };
 
-TEST(NoiseCorner, IsFoundWhereNothingElseIsMissing) {
+TEST(NoiseCorner, IsFoundIfNothingElseIsMissing) {
   constexpr double kCorner_hz = 20;
   const Coloured c(test::with_flicker(test::records_with({}, {1, 2}), kCorner_hz));
   EXPECT_GT(c.misfit_before, 1.5);
@@ -40,7 +40,7 @@ TEST(NoiseCorner, IsFoundWhereNothingElseIsMissing) {
   EXPECT_NEAR(c.misfit(), 1, 0.1);
 }
 
-TEST(NoiseCorner, IsNoneOfWhiteNoise) {
+TEST(NoiseCorner, IsNotFoundInWhiteNoise) {
   const Coloured c(test::records_with({}, {1, 2}));
   EXPECT_FALSE(c.is);
   EXPECT_EQ(c.recorded.segments.front().corner_hz, 0);

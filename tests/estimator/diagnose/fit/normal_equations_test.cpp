@@ -53,7 +53,7 @@ MatrixXd ends_of(const Weights& weights) {
   return out;
 }
 
-TEST(NormalEquations, AreThoseOfTheRowsWithoutEndTerms) {
+TEST(NormalEquations, MatchTheRowsWithoutEndTerms) {
   const Case c;
   const NormalEquations equations = normal_equations(c.at);
   MatrixXd normal = MatrixXd::Zero(c.at.columns[0].count(), c.at.columns[0].count());
@@ -126,7 +126,7 @@ TEST(NormalEquations, EndsAreEliminated) {
   EXPECT_NEAR(n.misfit, rest.col(2).squaredNorm(), kRounding);
 }
 
-TEST(NormalEquations, PriorPullsTowardsWhatIsBelieved) {
+TEST(NormalEquations, PriorPullsTowardItsMean) {
   Case c;
   c.model.theta[0] = 1.2 * c.plant.design[0];
   c.model.gain[3] = -0.01;  // two deviations

@@ -28,7 +28,7 @@ Model with_drift(const Plant& plant) {
   return test::with_effects(initial_model(plant), {drift});
 }
 
-TEST(Unknowns, AreWhatToleranceAndModelLeaveOpen) {
+TEST(Unknowns, DependOnTolerancesAndModel) {
   struct Case {
     Tolerances tolerances;
     long mass, gain, clock;
@@ -46,7 +46,7 @@ TEST(Unknowns, AreWhatToleranceAndModelLeaveOpen) {
   }
 }
 
-TEST(Unknowns, PanelsThatStandForARigidFloorAreNone) {
+TEST(Unknowns, LeaveOutPanelsOfARigidFloor) {
   const Plant plant = test::rigid_small().plant();
   const std::vector<Unknown> all = unknowns_of(plant, initial_model(plant), {});
   EXPECT_EQ(count(all, Kind::theta), 8);
@@ -57,7 +57,7 @@ TEST(Unknowns, PanelsThatStandForARigidFloorAreNone) {
   }
 }
 
-TEST(Unknowns, AnErrorThatIsAnEffectMayBeAnything) {
+TEST(Unknowns, ErrorsModelledAsEffectsAreUnbounded) {
   const Plant plant = Small().plant();
   Model model = initial_model(plant);
   model.free_gain = {2};
@@ -76,7 +76,7 @@ TEST(Unknowns, AnErrorThatIsAnEffectMayBeAnything) {
   }
 }
 
-TEST(Unknowns, BeginAtTheMiddleOfWhatIsBelieved) {
+TEST(Unknowns, StartAtThePriorMean) {
   Small small;
   small.axes[1].delay = 0.003;
   const Plant plant = small.plant();

@@ -40,7 +40,7 @@ struct Case {
   Whitened whitened() const { return whitened(model); }
 };
 
-TEST(Whitened, OfTheTrueModelNoiseIsLeftWithUnitVariance) {
+TEST(Whitened, LeavesNoiseOfUnitVarianceForTheTrueModel) {
   constexpr double kSigmas = 4;
   const Case c;
   const Whitened w = c.whitened();
@@ -58,7 +58,7 @@ TEST(Whitened, OfTheTrueModelNoiseIsLeftWithUnitVariance) {
   }
 }
 
-TEST(Whitened, OfAWrongModelMoreIsLeft) {
+TEST(Whitened, LeavesMoreForAWrongModel) {
   const Case c;
   const double least = c.whitened().misfit;
   Model wrong = c.model;
@@ -69,7 +69,7 @@ TEST(Whitened, OfAWrongModelMoreIsLeft) {
   EXPECT_GT(c.whitened(wrong).misfit, 1.5 * least);
 }
 
-TEST(Whitened, OperationIsThatOfTheEquations) {
+TEST(Whitened, OperationMatchesTheEquations) {
   constexpr double kMassChange = 0.03;
   Case c;
   c.model.mass_change[2] = kMassChange;
@@ -106,7 +106,7 @@ TEST(Whitened, ShownMotionFollowsTheEquations) {
   EXPECT_LT((w.motion - exact).norm(), kNearer * (w.calibrated - exact).norm());
 }
 
-TEST(Whitened, CalibrationTakesErrorsOff) {
+TEST(Whitened, CalibrationRemovesErrors) {
   constexpr double kGain = 0.07, kLate_s = 3e-3, kAngle = 0.1;
   Case c;
   const MatrixXcd straight = c.segment.spectrum;
@@ -127,7 +127,7 @@ TEST(Whitened, CalibrationTakesErrorsOff) {
   EXPECT_LT((calibrated(c.model, c.segment) - straight).norm(), kRounding * straight.norm());
 }
 
-TEST(Whitened, NoiseOfABinIsThatOfTheMotion) {
+TEST(Whitened, NoiseOfABinMatchesTheMotion) {
   constexpr double kGain = 0.25;
   constexpr Index kBin = 5;
   Case c;
@@ -159,7 +159,7 @@ TEST(Whitened, RowsOfForcesAndOfReadingsAgree) {
   EXPECT_LT((whiten_axis(w, 3, signal) - of_readings).norm(), kRounding * of_readings.norm());
 }
 
-TEST(Whitened, ForcesAndReadingsThatMayBeAnythingDoNotCount) {
+TEST(Whitened, IgnoresFreeForcesAndReadings) {
   constexpr double kChance = 5;  // deviations of the misfit
   const Case c;
   const double chance = kChance * std::sqrt(c.whitened().misfit);
@@ -187,7 +187,7 @@ TEST(Whitened, ForcesAndReadingsThatMayBeAnythingDoNotCount) {
   EXPECT_LT(pushed.whitened(broadband).misfit, c.whitened().misfit + chance);
 }
 
-TEST(Whitened, WhatCannotBeComputedIsNotGood) {
+TEST(Whitened, IsNotGoodIfItCannotBeComputed) {
   const Case c;
   Model unknown = c.model;
   unknown.theta[1] = std::numeric_limits<double>::quiet_NaN();

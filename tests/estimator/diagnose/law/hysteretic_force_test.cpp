@@ -26,7 +26,7 @@ VectorXd in_parts(const VectorXd& d) {
   return out;
 }
 
-TEST(Yielding, WhatHasYieldedEndsWhereSmallStepsDo) {
+TEST(Yielding, LargeStepsEndWhereSmallStepsDo) {
   constexpr double kMax = 5e-3;  // of the force
   VectorXd d(400);
   for (Index i = 0; i < d.size(); ++i) {

@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 constexpr double kRounding = 1e-12;
 constexpr double kStiffness = 4e6, kYields_m = 2e-3;  // of the hysteretic laws
 
-TEST(Law, ForcesAreThoseOfTheFormulas) {
+TEST(Law, ForcesMatchTheFormulas) {
   struct Case {
     LawValues law;
     double d, v, t, force;
@@ -58,7 +58,7 @@ TEST(Law, ForcesAreThoseOfTheFormulas) {
         << static_cast<int>(c.law.form) << " at " << c.d << ", " << c.v << ", " << c.t;
 }
 
-TEST(Law, OnlyThoseOfElementsPullThere) {
+TEST(Law, OnlyElementLawsHaveAForceHere) {
   for (const LawForm form :
        {LawForm::power, LawForm::saturating, LawForm::hysteresis, LawForm::sliders,
         LawForm::asymptotic, LawForm::pinched, LawForm::slip_lock, LawForm::slack,
@@ -107,7 +107,7 @@ VectorXd simulated_force(const Effect& effect, const VectorXd& d) {
   return simulated_force(*make_law(effect, test::Small::one_story()), d);
 }
 
-TEST(Law, HysteresisIsThatOfTheSimulator) {
+TEST(Law, HysteresisMatchesTheSimulator) {
   constexpr double kTolerance = 0.01;  // of the force at yielding
   struct Case {
     LawForm form;
@@ -170,7 +170,7 @@ TEST(Law, SteelFollowsItsCurveFromEveryReversal) {
   EXPECT_NEAR(force[3], -1, 0.05);
 }
 
-TEST(Law, SlippingJointsAreThoseOfTheSimulator) {
+TEST(Law, SlippingJointsMatchTheSimulator) {
   constexpr double kAt_m = 4 * kYields_m, kSoftening = 0.2, kExponent = 1.4;
   Effect effect = make_effect(EffectKind::amplitude_dependence, test::building_place(Direction::x));
   effect.set("softening", kSoftening);
@@ -188,7 +188,7 @@ TEST(Law, SlippingJointsAreThoseOfTheSimulator) {
 }
 
 /// Area of Masing's loop: 8 times the integral of first loading minus 4 times its end.
-TEST(Law, SlippingJointsLoseWhatTheirLoopSays) {
+TEST(Law, SlippingJointsDissipateTheAreaOfTheirLoop) {
   constexpr double kExponent = 1.5;
   constexpr Index kSteps = 4000;
   const LawValues law{LawForm::amplitude, {-1, kExponent, 0, 2, 1}, 1, 1};
@@ -201,7 +201,7 @@ TEST(Law, SlippingJointsLoseWhatTheirLoopSays) {
   EXPECT_NEAR(loss, 4 - 8 / (kExponent + 1), 1e-4);
 }
 
-TEST(Law, ASmallLoopLeavesTheLargeOneAsItWas) {
+TEST(Law, ASmallLoopDoesNotChangeTheLargeOne) {
   const LawValues law{LawForm::amplitude, {-1, 1.5, 0, 2, 1}, 1, 1};
   VectorXd d(6), without(4);
   d << 1, -0.2, 0.3, -0.1, -0.2, -0.6;
@@ -245,7 +245,7 @@ TEST(Law, FrictionMayFallWithTheRateAndAContactOnlyPushes) {
   EXPECT_EQ(contact.force(0.01, 1, 0), 0);
 }
 
-TEST(Law, FrictionThatGivesWayFirstIsThatOfTheSimulator) {
+TEST(Law, ElasticFrictionMatchesTheSimulator) {
   constexpr double kForce_n = 400, kGives_m = 2e-4, kPeak_m = 6e-3, kPeriod_s = 0.5;
   constexpr int kCycles = 3, kSteps = 400, kFiner = 50;
   const LawValues law{LawForm::friction, {kForce_n, 0.007, 0.3, 0.02, kGives_m}, 1, 1};
@@ -296,7 +296,7 @@ TEST(Law, ASteadyBilinearLoopDissipatesItsArea) {
   EXPECT_NEAR(work / (4 * kStiffness * kYields_m * (kAmplitude_m - kYields_m)), 1, kTolerance);
 }
 
-TEST(Law, AskingForAForceChangesNothing) {
+TEST(Law, ComputingAForceChangesNoState) {
   const LawValues law{LawForm::hysteresis, {kStiffness, kYields_m, 2, 0.5}, 1, 1};
   LawMotion asked(law), silent(law);
   for (const double d : {0.001, 0.004, 0.002, -0.003}) {
@@ -312,7 +312,7 @@ TEST(Law, AskingForAForceChangesNothing) {
 }
 
 /// A step evaluated for several ends gives the same as one evaluated for the last end only.
-TEST(Law, AStepOfHysteresisDoesNotRememberOtherEnds) {
+TEST(Law, AStepOfHysteresisForgetsTriedEnds) {
   const std::vector<LawValues> laws{
       {LawForm::hysteresis, {kStiffness, kYields_m, 1.5, 0.4, 0.1, 0.05, -1}, 1, 1},
       {LawForm::pinched, {kStiffness, kYields_m, 2, 0.5, 0.8, 0.3, 0.1, 2, 0.1, 0.2}, 1, 1},
@@ -331,7 +331,7 @@ TEST(Law, AStepOfHysteresisDoesNotRememberOtherEnds) {
   }
 }
 
-TEST(Law, ForceOfAKnownMotionGoesThroughItsTime) {
+TEST(Law, ForceOfAKnownMotionFollowsItsTime) {
   const LawValues law{LawForm::changing, {8, 0.25, 0.5}, 1, 1};
   const VectorXd force = law_force(law, VectorXd::Ones(5), VectorXd::Zero(5), 0.25);
   const VectorXd expected = (VectorXd(5) << 0, 0, 4, 8, 8).finished();
@@ -347,7 +347,7 @@ VectorXd brace_force(const LawValues& law, const VectorXd& d) {
   return law_force(law, d, VectorXd::Zero(d.size()), 0.01) / (kStiffness * kYields_m);
 }
 
-TEST(SlackBrace, PullsFromWhereItHasBeen) {
+TEST(SlackBrace, PullsFromItsPlasticDeformation) {
   VectorXd d(6), expected(6);
   d << 4, 3.5, 0, 3, 5, -0.5;
   expected << 1, 0.5, 0, 0, 1, -0.5;  // yields, returns, is slack, is tight again
@@ -358,7 +358,7 @@ TEST(SlackBrace, PullsFromWhereItHasBeen) {
 }
 
 /// The simulator takes steps of a tenth.
-TEST(SlackBrace, IsThatOfTheSimulator) {
+TEST(SlackBrace, MatchesTheSimulator) {
   constexpr int kFiner = 10;
   constexpr Index kSteps = 2000;
   constexpr double kPlay_m = 0.3 * kYields_m;

@@ -23,7 +23,7 @@ long count(const std::vector<CandidatePlace>& all, Kind kind) {
                        [&](const CandidatePlace& c) { return c.kind == kind; });
 }
 
-TEST(CandidatePlaces, AreEveryPlaceOnce) {
+TEST(CandidatePlaces, ListEveryPlaceOnce) {
   struct Case {
     Plant plant;
     long axes, elements, floors, nodes, links, crossings, rocking;
@@ -52,7 +52,7 @@ TEST(CandidatePlaces, AreEveryPlaceOnce) {
   }
 }
 
-TEST(CandidatePlaces, OnlyTheBasesMomentFollowsTheStiffnesses) {
+TEST(CandidatePlaces, OnlyRockingDependsOnStiffness) {
   const Plant plant = Small().plant();
   Model model = initial_model(plant);
   const std::vector<CandidatePlace> before = candidate_places_of(plant, model);
@@ -65,7 +65,7 @@ TEST(CandidatePlaces, OnlyTheBasesMomentFollowsTheStiffnesses) {
   }
 }
 
-TEST(CandidatePlaces, TheirBasisIsOrthonormal) {
+TEST(CandidatePlaces, HaveAnOrthonormalBasis) {
   constexpr double kRounding = 1e-9;
   const Small small;
   const Plant plant = small.plant();
@@ -102,7 +102,7 @@ std::size_t contending(const std::vector<Localisation>& places) {
   return contenders(places).size();
 }
 
-TEST(Contenders, AreNearTheBestAndFewOfAKind) {
+TEST(Contenders, AreNearTheBestAndLimitedPerKind) {
   const auto e = [](double ratio) { return left(Kind::element, ratio); };
   EXPECT_EQ(contending({}), 0U);
   EXPECT_EQ(contending({e(1)}), 1U);
@@ -116,7 +116,7 @@ TEST(Contenders, AreNearTheBestAndFewOfAKind) {
   EXPECT_EQ(contending({e(1), e(1.3), left(Kind::rocking, 1.3), left(Kind::rocking, 1.5)}), 2U);
 }
 
-TEST(Contenders, AreOfOneDirectionBesideBothOfAMass) {
+TEST(Contenders, IncludeOneDirectionBesideAMassInBoth) {
   const Plant plant = Small().plant();
   const std::vector<CandidatePlace> all = candidate_places_of(plant, initial_model(plant));
   const auto left_at = [&](Eigen::Index directions, double ratio) {
@@ -131,7 +131,7 @@ TEST(Contenders, AreOfOneDirectionBesideBothOfAMass) {
   EXPECT_EQ(contending({left_at(2, 1), left_at(1, 40)}), 1U) << "the mass leaves nothing";
 }
 
-TEST(Chance, FallsWithTheRootOfTheData) {
+TEST(Chance, FallsWithTheSquareRootOfTheData) {
   const Small small;
   const Plant plant = small.plant();
   const Eigen::MatrixXd record = small.record({}, 1);

@@ -63,7 +63,7 @@ struct Case {
   }
 };
 
-TEST(BinCurvature, IsThatOfTheColumnsWithoutThePlaces) {
+TEST(BinCurvature, MatchesTheColumnsWithoutThePlaces) {
   const Case c;
   const std::vector<std::vector<CandidatePlace>> lists = c.lists();
   ASSERT_GT(lists.size(), 3U);
@@ -88,7 +88,7 @@ TEST(BinCurvature, IsThatOfTheColumnsWithoutThePlaces) {
   }
 }
 
-TEST(BinProducts, OfRowsWithTheColumns) {
+TEST(BinProducts, EqualRowsTimesColumns) {
   const Case c;
   const MatrixXcd columns = c.columns();
   VectorXcd rows(c.plant.equations());

@@ -71,7 +71,7 @@ std::vector<Hidden> hidden_effects() {
 
 class LocaliseHidden : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(LocaliseHidden, OnlyItsOwnPlaceLeavesNoise) {
+TEST_P(LocaliseHidden, LeavesNoiseOnlyAtTheTruePlace) {
   constexpr double kChance = 4.5;
   const Hidden hidden = hidden_effects()[GetParam()];
   const Case c(Small().record({hidden.effect}, 3));
@@ -88,7 +88,7 @@ TEST_P(LocaliseHidden, OnlyItsOwnPlaceLeavesNoise) {
 INSTANTIATE_TEST_SUITE_P(AtEveryKindOfPlace, LocaliseHidden,
                          testing::Range(std::size_t{0}, hidden_effects().size()));
 
-TEST(Localise, AWrongReadingIsFoundAtItsAxis) {
+TEST(Localise, FindsAWrongReadingAtItsAxis) {
   constexpr int kAxis = 1;
   MatrixXd record = Small().record({}, 3);
   record.col(kAxis) *= 1.08;
@@ -129,7 +129,7 @@ TEST(Localise, OneStepRanksTheRightPlaceFirst) {
     EXPECT_NEAR(again[once.size() - 1 - i].ratio / once[i].ratio, 1, 1e-9);
 }
 
-TEST(Localise, WhereEverythingIsFreeEverythingFits) {
+TEST(Localise, FitsEverythingIfAllIsFree) {
   const Case c(Small().record({}, 5));
   std::vector<CandidatePlace> every;
   for (int f = 0; f < 4; ++f) every.push_back(c.at(Kind::element, test::frame_place(f)));
@@ -139,7 +139,7 @@ TEST(Localise, WhereEverythingIsFreeEverythingFits) {
   EXPECT_EQ(l.model.theta, c.plant.design);
 }
 
-TEST(Localise, AModelThatCannotBeComputedLocatesNothing) {
+TEST(Localise, FindsNothingForAnInvalidModel) {
   const Case c(Small().record({}, 5));
   Model unknown = initial_model(c.plant);
   unknown.theta[0] = std::numeric_limits<double>::quiet_NaN();

@@ -16,13 +16,13 @@ std::vector<Eigen::MatrixXd> records_with_spring() {
       {test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {1e10})}, {1, 2});
 }
 
-TEST(ColourBesideAPlace, IsThatOfTheNoiseWhateverActsThere) {
+TEST(NoiseCornerAtPlace, IsFoundForFlickerNoiseDespiteALawThere) {
   test::Recorded r(test::with_flicker(records_with_spring(), kCorner_hz));
   ASSERT_TRUE(set_noise_corner_at(r.fitter, r.segments, r.freed(test::in_frame(1))));
   EXPECT_NEAR(r.segments.front().corner_hz / kCorner_hz, 1, 0.35);
 }
 
-TEST(ColourBesideAPlace, IsNoneOfWhiteNoise) {
+TEST(NoiseCornerAtPlace, IsNotFoundInWhiteNoise) {
   test::Recorded r(records_with_spring());
   EXPECT_FALSE(set_noise_corner_at(r.fitter, r.segments, r.freed(test::in_frame(1))));
   EXPECT_EQ(r.segments.front().corner_hz, 0);

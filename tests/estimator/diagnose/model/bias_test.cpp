@@ -38,7 +38,7 @@ struct Ramped {
   RecordSegment segment() const { return small.segments({record}).front(); }
 };
 
-TEST(Bias, ARampIsFoundOnItsAxisAlone) {
+TEST(Bias, FindsARampOnlyOnItsAxis) {
   constexpr double kSlopeTolerance = 0.05, kFromTolerance_s = 1.5;
   for (const double sign : {1.0, -1.0}) {
     Ramped r;
@@ -55,20 +55,20 @@ TEST(Bias, ARampIsFoundOnItsAxisAlone) {
   }
 }
 
-TEST(Bias, NoneIsFoundWhereThereIsNone) {
+TEST(Bias, IsNotFoundWithoutARamp) {
   const Ramped r;
   const RecordSegment s = r.segment();
   for (Index a = 0; a < 6; ++a) EXPECT_FALSE(find_ramp(r.plant, s, a)) << a;
 }
 
-TEST(Bias, WhatAllAxesDoIsNotBias) {
+TEST(Bias, ACommonMotionIsNoBias) {
   Ramped r;
   for (Index a = 0; a < 6; ++a) add_ramp(r.record, a, kSlope_mps3, kFrom_s);
   const RecordSegment s = r.segment();
   for (Index a = 0; a < 6; ++a) EXPECT_FALSE(find_ramp(r.plant, s, a)) << a;
 }
 
-TEST(Bias, AShortRecordShowsLargeDriftsAlone) {
+TEST(Bias, AShortRecordShowsOnlyLargeDrifts) {
   constexpr Index kShort = 1000;
   for (const double slope_mps3 : {0.002, 0.2}) {
     Ramped r;
@@ -79,7 +79,7 @@ TEST(Bias, AShortRecordShowsLargeDriftsAlone) {
   }
 }
 
-TEST(Bias, WithoutItsRampARecordIsAsItWas) {
+TEST(Bias, RemovingARampRestoresTheRecord) {
   constexpr double kRounding = 1e-9;
   Ramped r;
   const RecordSegment before = r.segment();

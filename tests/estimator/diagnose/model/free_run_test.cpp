@@ -53,7 +53,7 @@ double miss(const Small& small, const MatrixXd& record, const Model& with, Index
   return (acceleration_of(run.tracks.back(), segment) - measured).norm() / measured.norm();
 }
 
-TEST(FreeRun, OfALinearBuildingIsItsMotion) {
+TEST(FreeRun, ReproducesTheMotionOfALinearBuilding) {
   constexpr double kTolerance = 5e-3, kShows = 0.05;
   const Small small;
   const Model model = test::true_model(small, small.plant());
@@ -68,7 +68,7 @@ std::vector<EffectTwins> all_twins();
 
 class FreeRunWith : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(FreeRunWith, AnEffectIsThatOfTheSimulator) {
+TEST_P(FreeRunWith, AnEffectMatchesTheSimulator) {
   constexpr double kTolerance = 0.02, kShows = 0.06;
   const Small small;
   const Model model = test::true_model(small, small.plant());
@@ -148,7 +148,7 @@ struct Yielding {
   }
 };
 
-TEST(FreeRun, ASmallSpringIsAChangeOfStiffness) {
+TEST(FreeRun, ASmallSpringActsLikeAChangeOfStiffness) {
   constexpr double kChange = 1e-3, kTolerance = 0.01;
   const Yielding y;
   const VectorXd before = y.run(y.model, nullptr).tracks.front().d;
@@ -164,7 +164,7 @@ TEST(FreeRun, ASmallSpringIsAChangeOfStiffness) {
   }
 }
 
-TEST(FreeRun, OfACacheIsTheSame) {
+TEST(FreeRun, FromACacheIsTheSame) {
   const Yielding y;
   RunCache cache;
   Model other = y.model, softer = y.model, late = y.model;
@@ -179,7 +179,7 @@ TEST(FreeRun, OfACacheIsTheSame) {
   }
 }
 
-TEST(FreeRun, TakesGainAndDelayOffTheBase) {
+TEST(FreeRun, RemovesGainAndDelayOfTheBase) {
   constexpr double kTolerance = 2e-3, kGain = 0.1;
   constexpr Index kLate = 2;  // samples
   const Small small;
@@ -202,7 +202,7 @@ TEST(FreeRun, TakesGainAndDelayOffTheBase) {
   EXPECT_GT((deformation(read) - expected).norm(), kGain * expected.norm());
 }
 
-TEST(FreeRun, ALeadBringsTheMotionInWhichARecordBegins) {
+TEST(FreeRun, ALeadProvidesTheInitialMotionOfARecord) {
   constexpr double kTolerance = 0.02;
   const Small small;
   const EffectTwins twins = test::cubic_spring(kWatched, 2e11);
@@ -213,7 +213,7 @@ TEST(FreeRun, ALeadBringsTheMotionInWhichARecordBegins) {
   EXPECT_GT(miss(small, record.bottomRows(record.rows() - kLead), model), 2 * kTolerance);
 }
 
-TEST(FreeRun, WhatRunsAwayIsNotGood) {
+TEST(FreeRun, IsNotGoodIfItDiverges) {
   const Small small;
   const MatrixXd record = test::exact_record(small, {}, 6);
   const Model model = test::true_model(small, small.plant());

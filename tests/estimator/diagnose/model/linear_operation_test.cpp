@@ -41,7 +41,7 @@ void expect_same(const MatrixXcd& is, const MatrixXcd& expected, const std::stri
   EXPECT_LT((is - expected).norm(), kRounding * std::max(expected.norm(), 1.0)) << what;
 }
 
-TEST(LinearOperation, AMassIsThatOfAHeavierNode) {
+TEST(LinearOperation, AMassActsLikeAHeavierNode) {
   constexpr double kMass = 3000;
   const Small small;
   const Plant plant = small.plant();
@@ -56,7 +56,7 @@ TEST(LinearOperation, AMassIsThatOfAHeavierNode) {
   }
 }
 
-TEST(LinearOperation, SpringsAndDampersToTheGroundAreThoseOfTheFrame) {
+TEST(LinearOperation, SpringsAndDampersToTheGroundActLikeAFrame) {
   constexpr double kStiffness = 4e5, kDamping = 9e3;
   const Plant plant = Small().plant();
   for (int f = 0; f < 4; ++f)
@@ -102,7 +102,7 @@ TEST(LinearOperation, PanelsOfAFloorTakeTheirNewValues) {
 }
 
 /// A frame on a rotational spring is in series with it: k / (1 + k h^2 / kr).
-TEST(LinearOperation, RockingAndBendingSoftenASingleFrameAsInSeries) {
+TEST(LinearOperation, RockingAndBendingActInSeriesWithASingleFrame) {
   constexpr double kFlexibility = 2e-9;  // 1 / kr
   const test::SingleMass single;
   const Plant plant = single.plant();
@@ -136,7 +136,7 @@ TEST(LinearOperation, BendingLeavesTheOtherDirectionAndRockingCouplesFrames) {
   EXPECT_GT(std::abs(of(LawForm::rocking, Direction::x)(0, 1)), 1);
 }
 
-TEST(LinearOperation, AResonatorPassesOnLessAndLessAboveItsFrequency) {
+TEST(LinearOperation, AResonatorIsolatesAboveItsFrequency) {
   constexpr double kHz = 2, kDamping = 0.07, kMass = 900;
   const ModelEffect resonator =
       effect_of(LawForm::resonator, test::node_place(1), {kMass, kHz, kDamping});
@@ -166,7 +166,7 @@ TEST(LinearOperation, ForcesFromOutsideAndReadingsAddNothing) {
   }
 }
 
-TEST(LinearOperation, IsAddedToWhatIsThere) {
+TEST(LinearOperation, IsAddedToExistingTerms) {
   constexpr double kW = 10;
   const Plant plant = Small().plant();
   const ModelEffect mass = effect_of(LawForm::mass, test::crossing_place(2), {500});

@@ -84,7 +84,7 @@ TEST(PartialPlant, StoriesBetweenMeasuredFloorsShareFactors) {
   EXPECT_NEAR(value_of(model, all[0]), 1.5, kRounding);
 }
 
-TEST(PartialPlant, PlacesAreThoseThatAreRead) {
+TEST(PartialPlant, PlacesCoverMeasuredMotions) {
   const InSpace building;
   const Plant plant = building.plant();
   for (const CandidatePlace& place : candidate_places_of(plant, initial_model(plant))) {
@@ -117,7 +117,7 @@ TEST(PartialPlant, ABaseThatTurnsDrivesFramesByTheirPlaces) {
   }
 }
 
-TEST(PartialPlant, AMeasuredForceDrivesAndMovesNothingItself) {
+TEST(PartialPlant, AMeasuredForceIsAnInputButNoMotion) {
   Structure structure = daemon::tall_building(3);
   std::vector<SensorAxis> axes = daemon::floor_axes({1, 2, 3});
   axes.erase(axes.begin());  // the base rests
@@ -144,7 +144,7 @@ TEST(PartialPlant, FramesBendAsDesigned) {
   EXPECT_EQ(model.effects[0].place.direction, Direction::x);
 }
 
-TEST(PartialPlant, NeedsTheBaseInEveryDirectionThatIsMeasured) {
+TEST(PartialPlant, NeedsTheBaseInEveryMeasuredDirection) {
   InSpace building;
   std::erase_if(building.axes, [](const SensorAxis& axis) {
     return axis.story == 0 && axis.direction == Direction::y;

@@ -56,7 +56,7 @@ struct Chain {
   }
 };
 
-TEST(ModalSystem, AnswersARampAsTheClosedForm) {
+TEST(ModalSystem, MatchesTheClosedFormForARamp) {
   constexpr double kMass = 4, kHz = 1.5, kDamping = 0.05, kSeconds = 3;
   const double w = 2 * M_PI * kHz, stiffness = kMass * w * w,
                turn = w * std::sqrt(1 - kDamping * kDamping);
@@ -75,7 +75,7 @@ TEST(ModalSystem, AnswersARampAsTheClosedForm) {
   }
 }
 
-TEST(ModalSystem, IsExactForInputsThatAreLinearWithinAStep) {
+TEST(ModalSystem, IsExactForInputsLinearWithinAStep) {
   constexpr int kSteps = 40;
   // Light damping, strong damping with overdamped modes, and almost none; steps from fine to longer
   // than a period.
@@ -103,7 +103,7 @@ TEST(ModalSystem, IsExactForInputsThatAreLinearWithinAStep) {
     }
 }
 
-TEST(ModalSystem, ACorrectedStepIsOnePredictedWhole) {
+TEST(ModalSystem, ACorrectedStepEqualsAFullStep) {
   const Chain chain(0.8);
   ModalSystem parts = chain.system(0.1), whole = chain.system(0.1);
   const ModalSystem::Observer seen = parts.observe(Eigen::Vector3d(1, -1, 0.3));
@@ -122,7 +122,7 @@ TEST(ModalSystem, ACorrectedStepIsOnePredictedWhole) {
   }
 }
 
-TEST(ModalSystem, AnAddedInputActsLikeOneFromTheBegin) {
+TEST(ModalSystem, AnAddedInputActsLikeAnInitialOne) {
   const Chain chain(0.8);
   Chain less = chain;
   less.inputs = chain.inputs.leftCols(1);
@@ -164,7 +164,7 @@ TEST(ModalSystem, AConstantForceEndsAtItsStaticDeformation) {
     EXPECT_NEAR(system.displacement(system.observe(VectorXd::Unit(3, c))), expected[c], kRounding);
 }
 
-TEST(ModalSystem, IsNotGoodWhereItRunsAwayOrIsNoNumber) {
+TEST(ModalSystem, IsNotGoodIfItDivergesOrIsNan) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   struct Case {
     double mass, damping, stiffness;

@@ -17,7 +17,7 @@ namespace model_test {
 using Eigen::VectorXd;
 using test::Small;
 
-TEST(Model, AParameterIsALogarithmWhereItSaysSo) {
+TEST(Model, AParameterMayBeStoredAsALogarithm) {
   LawParameter parameter = test::parameter_of(std::log(250.0));
   EXPECT_DOUBLE_EQ(parameter.plain(), std::log(250.0));
   parameter.logarithmic = true;
@@ -36,7 +36,7 @@ TEST(Model, BeginsWithTheDesignAndTheDeclaredDelays) {
   EXPECT_TRUE(model.free_gain.empty() && model.free_clock.empty());
 }
 
-TEST(Model, ALawsValuesAreSharedOnesThenThoseOfTheRecord) {
+TEST(Model, ALawsValuesAreSharedOnesThenRecordOnes) {
   ModelEffect effect = test::effect_of(LawForm::changing, test::frame_place(0), {-5e5}, {3, 2});
   effect.record_parameters.push_back({test::parameter_of(9), test::parameter_of(1)});
   effect.deformation = 0.01;

@@ -17,7 +17,7 @@ using test::Small;
 
 constexpr double kRounding = 1e-9;
 
-TEST(Plant, EquationsAreThoseOfTheStructure) {
+TEST(Plant, EquationsMatchTheStructure) {
   const Small small;
   const Plant plant = small.plant();
   EXPECT_EQ(plant.equations(), 4);
@@ -60,7 +60,7 @@ TEST(Plant, ExactMotionBalancesItsForces) {
   EXPECT_LT((inertia + plant.building.act * force).norm(), kTolerance * inertia.norm());
 }
 
-TEST(Plant, WhatNoAxisReadsFollowsButTheBasesMotion) {
+TEST(Plant, UnreadMotionsFollowExceptAtTheBase) {
   for (std::size_t missing = 0; missing < 6; ++missing) {
     Small small;
     small.axes.erase(small.axes.begin() + static_cast<long>(missing));
@@ -72,7 +72,7 @@ TEST(Plant, WhatNoAxisReadsFollowsButTheBasesMotion) {
   }
 }
 
-TEST(Plant, ARigidFloorWithEverySensorMayFlex) {
+TEST(Plant, ARigidFloorWithEverySensorHasEveryCoordinate) {
   constexpr double kStiffEnough = 100;  // times the stiffest frame
   const Small small = test::rigid_small();
   const Plant plant = small.plant();

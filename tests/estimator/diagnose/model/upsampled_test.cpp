@@ -26,7 +26,7 @@ VectorXd sampled(double cycles_per_sample) {
   return out;
 }
 
-TEST(Upsampled, LiesOnTheWaveLaterByTheShift) {
+TEST(Upsampled, FollowsTheWaveDelayedByTheShift) {
   struct Case {
     double cycles_per_sample, tolerance;
   };

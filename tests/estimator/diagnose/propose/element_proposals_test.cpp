@@ -47,7 +47,7 @@ double size_of(const ModelEffect& e) {
 
 class LawInAFrame : public testing::TestWithParam<HiddenLaw> {};
 
-TEST_P(LawInAFrame, IsProposedFirst) {
+TEST_P(LawInAFrame, IsProposedFirstInItsFrame) {
   const HiddenLaw& law = GetParam();
   Effect effect = make_effect(law.kind, test::in_frame(kFrame));
   std::copy(law.values.begin(), law.values.end(), effect.values.begin());
@@ -144,7 +144,7 @@ struct QuietElement {
   }
 };
 
-TEST(ElementProposals, NoDissipatingLawIsProposedForAForceThatDrives) {
+TEST(ElementProposals, ProposeNoDissipativeLawForADrivingForce) {
   QuietElement frame(test::in_frame(kFrame));
   NeededSignal& needed = frame.needed.front();
   const RecordSegment& s = frame.recorded.segments.front();
@@ -159,7 +159,7 @@ TEST(ElementProposals, NoDissipatingLawIsProposedForAForceThatDrives) {
   EXPECT_GE(others, 6);  // power, three gaps, two changes
 }
 
-TEST(ElementProposals, NoStiffnessIsProposedBelowTheLeastShare) {
+TEST(ElementProposals, ProposeNoStiffnessBelowTheLeastShare) {
   QuietElement frame(test::in_frame(kFrame));
   const int element = frame.place.candidate_places.front().element;
   const double design = frame.recorded.plant.design[element];
@@ -170,7 +170,7 @@ TEST(ElementProposals, NoStiffnessIsProposedBelowTheLeastShare) {
     EXPECT_GE(p.model.theta[element], 0.999 * kMinShare * design) << name_of(p.kind);
 }
 
-TEST(ElementProposals, LinearForceGoesToStiffnessAndDamping) {
+TEST(ElementProposals, AssignALinearForceToStiffnessAndDamping) {
   constexpr double kMoreStiffness = 3e5, kMoreDamping = 2e4, kNear = 0.01;
   QuietElement frame(test::in_frame(kFrame));
   NeededSignal& needed = frame.needed.front();
@@ -188,7 +188,7 @@ TEST(ElementProposals, LinearForceGoesToStiffnessAndDamping) {
   }
 }
 
-TEST(ElementProposals, OnlyFramesPinch) {
+TEST(ElementProposals, ProposePinchingOnlyForFrames) {
   EffectPlace panel;
   panel.kind = PlaceKind::panel;
   panel.story = 1;
@@ -235,7 +235,7 @@ struct Changing {
   double seconds() const { return recorded.segments.front().seconds(); }
 };
 
-TEST(TimedChange, ADropIsTimed) {
+TEST(TimedChange, FindsTheTimeOfADrop) {
   for (const double from_s : {2.0, 9.3, 15.0}) {
     const Changing c(from_s, 0.05, true);
     const std::vector<LawParameter> times = c.times(0, true);
@@ -244,7 +244,7 @@ TEST(TimedChange, ADropIsTimed) {
   }
 }
 
-TEST(TimedChange, ADriftIsTimedAndItsDurationFree) {
+TEST(TimedChange, FindsTheTimeOfADriftAndFreesItsDuration) {
   constexpr double kFrom_s = 4, kDuration_s = 13;
   const Changing c(kFrom_s, kDuration_s, true);
   const std::vector<LawParameter> times = c.times(0, false);
@@ -253,14 +253,14 @@ TEST(TimedChange, ADriftIsTimedAndItsDurationFree) {
   EXPECT_TRUE(times[1].free);
 }
 
-TEST(TimedChange, ARecordAfterTheChangeIsAllChanged) {
+TEST(TimedChange, CoversAWholeRecordAfterTheChange) {
   // Alone it could be a change of another stiffness; the first record decides.
   constexpr double kStillAtRest_s = 1;
   const Changing c(10, 0.05, true);
   EXPECT_LT(c.times(1, true)[0].plain(), kStillAtRest_s);
 }
 
-TEST(TimedChange, ARecordBeforeTheChangeHasItAtItsEnd) {
+TEST(TimedChange, StartsAtTheEndOfARecordBeforeTheChange) {
   constexpr double kMotionEnds_s = 15;
   const Changing c(10, 0.05, false);
   EXPECT_GT(c.times(1, true)[0].plain(), kMotionEnds_s);

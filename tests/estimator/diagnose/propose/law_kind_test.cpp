@@ -87,7 +87,7 @@ class Unnamed : public ElementLaw {
   double slider_ = 0, slid_ = 0, up_ = 0, down_ = 0;
 };
 
-TEST(LawKind, IsFoundOfLawsWithoutAName) {
+TEST(LawKind, IsFoundForUnnamedLaws) {
   const auto kind = [](Unnamed::Sort sort) {
     const Recorded recorded(
         {test::Small().record_with_law(kFrame, std::make_unique<Unnamed>(sort), 1)});
@@ -108,7 +108,7 @@ TEST(LawKind, IsFoundOfLawsWithoutAName) {
   EXPECT_STREQ(law_kind_word(gives.kind), "elastic") << "softer beyond, no contact";
 }
 
-TEST(LawKind, EveryLawOfAnElementIsOfOneAndThoseThatStickOfTwo) {
+TEST(LawKind, IsUniqueExceptForStickingLaws) {
   const LawKind kinds[] = {LawKind::elastic, LawKind::impact, LawKind::dissipative,
                            LawKind::hysteretic, LawKind::time_varying};
   for (const EffectDescription& d : effect_catalogue()) {
@@ -125,7 +125,7 @@ TEST(LawKind, EveryLawOfAnElementIsOfOneAndThoseThatStickOfTwo) {
   EXPECT_FALSE(is_of_kind(EffectKind::bouc_wen, LawKind::dissipative));
 }
 
-TEST(LawKind, DrawsTheForceOverDeformationAndRate) {
+TEST(LawKind, GivesTheForceOverDeformationAndRate) {
   const RestoringSurface hardening = kind_with(EffectKind::cubic_stiffness, {2.25e10}).surface;
   // Cells that the motion hardly reached have no force. These are the outermost ones that have one.
   const Eigen::Index middle = hardening.v_mps.size() / 2;

@@ -39,14 +39,14 @@ std::string_view name(const ModelEffect& effect) {
   return name_of(name_of_fit(effect, half_minute()));
 }
 
-TEST(NameOfFit, ExponentTellsQuadraticFromCubic) {
+TEST(NameOfFit, ExponentDistinguishesQuadraticFromCubic) {
   EXPECT_EQ(name(effect_with(LawForm::power, {1, 1.2})), "quadratic_stiffness");
   EXPECT_EQ(name(effect_with(LawForm::power, {1, kExponent * (1 - kNear)})), "quadratic_stiffness");
   EXPECT_EQ(name(effect_with(LawForm::power, {1, kExponent * (1 + kNear)})), "cubic_stiffness");
   EXPECT_EQ(name(effect_with(LawForm::power, {-1, 9})), "cubic_stiffness");
 }
 
-TEST(NameOfFit, YieldAndSharpnessTellHysteresisApart) {
+TEST(NameOfFit, YieldAndSharpnessDistinguishHysteresis) {
   const auto hysteresis = [](double yield_share, double exponent) {
     return name(effect_with(LawForm::hysteresis, {1e6, yield_share * kPeak_m, exponent, 0.5}));
   };
@@ -59,7 +59,7 @@ TEST(NameOfFit, YieldAndSharpnessTellHysteresisApart) {
   EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 2), "coulomb_friction");
 }
 
-TEST(NameOfFit, ASlipZoneAsWideAsTheLoopIsNone) {
+TEST(NameOfFit, IgnoresASlipZoneAsWideAsTheLoop) {
   const auto pinched = [](double yield_share, double width, double work = 0) {
     return effect_with(LawForm::pinched,
                        {1e6, yield_share * kPeak_m, 2, 0.5, 0.5, width, 0, work, 0, 0});
@@ -76,7 +76,7 @@ TEST(NameOfFit, ASlipZoneAsWideAsTheLoopIsNone) {
   EXPECT_EQ(plain.parameters.size(), 6U);
 }
 
-TEST(NameOfFit, AYieldIsReadFromItsLogarithm) {
+TEST(NameOfFit, ReadsAYieldFromItsLogarithm) {
   ModelEffect effect = effect_with(LawForm::hysteresis, {1e6, 0, 2, 0.5});
   effect.parameters[1] = logarithmic_parameter(0.3 * kPeak_m, 1e-9, 1);
   EXPECT_EQ(name(effect), "bouc_wen");
@@ -84,7 +84,7 @@ TEST(NameOfFit, AYieldIsReadFromItsLogarithm) {
   EXPECT_EQ(name(effect), "coulomb_friction");
 }
 
-TEST(NameOfFit, TheShortestDurationTellsDropFromDrift) {
+TEST(NameOfFit, DurationDistinguishesDropFromDrift) {
   const auto change = [](std::initializer_list<double> durations_s) {
     ModelEffect out = effect_with(LawForm::changing, {-1e5});
     for (const double duration_s : durations_s)

@@ -52,7 +52,7 @@ TEST(NeededSignal, WeightIsTheInverseVariance) {
     EXPECT_LT((9 * of_noisier[r].weight - needed[r].weight).norm(), 1e-9 * needed[r].weight.norm());
 }
 
-TEST(NeededSignal, DeformationIsWhatTheFloorMovesAgainstTheGround) {
+TEST(NeededSignal, DeformationIsRelativeToTheGround) {
   constexpr double kOff = 0.02;
   const Recorded recorded(test::records_with({}));
   const Localisation place = recorded.freed(test::in_frame(kFrame));
@@ -73,7 +73,7 @@ TEST(NeededSignal, DeformationIsWhatTheFloorMovesAgainstTheGround) {
   EXPECT_LT((slope - rate).norm(), kOff * rate.norm());
 }
 
-TEST(NeededSignal, ForceFromOutsideComesBackWithItsSignAndSize) {
+TEST(NeededSignal, RecoversAnExternalForceWithSignAndSize) {
   constexpr double kForce_n = 3000, kHz = 3.3, kPhase = 0.4;
   const Recorded recorded(
       test::records_with({test::effect_of(EffectKind::unmeasured_force, test::at_node(kFrame),
@@ -93,7 +93,7 @@ TEST(NeededSignal, ForceFromOutsideComesBackWithItsSignAndSize) {
   EXPECT_LT(left_of(needed, s.w, {outside}), kForceOff);
 }
 
-TEST(NeededSignal, ForceOfALawComesBackWithItsSignAndSize) {
+TEST(NeededSignal, RecoversTheForceOfALawWithSignAndSize) {
   constexpr double kStiffness_npm3 = 2e10;
   const Recorded recorded(test::records_with(
       {test::effect_of(EffectKind::cubic_stiffness, test::in_frame(kFrame), {kStiffness_npm3})}));
@@ -107,7 +107,7 @@ TEST(NeededSignal, ForceOfALawComesBackWithItsSignAndSize) {
   EXPECT_NEAR(found[2] / kStiffness_npm3, 1, kForceOff);
 }
 
-TEST(NeededSignal, WhatAnotherPlaceDoesIsNotCounted) {
+TEST(NeededSignal, LeavesOutForcesOfOtherPlaces) {
   // Both frames of a direction need a force. With the other frame free, each needs only its own
   // force.
   constexpr double kForce_n = 4000;
@@ -191,7 +191,7 @@ TEST(ScalarFit, CoefficientsAreReal) {
   EXPECT_NEAR(fit.misfit, scalar_sums(record.needed, {}).total, kRounding);
 }
 
-TEST(ScalarFit, ColumnsOfVerySmallUnitsAreFoundAsWell) {
+TEST(ScalarFit, HandlesColumnsOfVerySmallUnits) {
   constexpr double kLarge = 3e8, kSmall = 2e-7;
   Random random(7);
   AnyRecord record(random, 2);
@@ -203,7 +203,7 @@ TEST(ScalarFit, ColumnsOfVerySmallUnitsAreFoundAsWell) {
   EXPECT_NEAR(fit.coefficients[1] / kSmall, -4, kRounding);
 }
 
-TEST(ScalarFit, ColumnsThatAreAlikeShareTheForce) {
+TEST(ScalarFit, SharesTheForceBetweenEqualColumns) {
   Random random(8);
   AnyRecord record(random, 1);
   record.columns.push_back(record.columns[0]);
@@ -228,7 +228,7 @@ TEST(ScalarFit, SumsOfRecordsAddUp) {
   EXPECT_LE(a.fit().misfit + b.fit().misfit, both.fit().misfit + kRounding);
 }
 
-TEST(LawParameter, HoldsItsValueAndBoundsInItsOwnUnits) {
+TEST(LawParameter, ScalesItsValueAndBounds) {
   const LawParameter linear = linear_parameter(-3, -0.5);
   EXPECT_DOUBLE_EQ(linear.plain(), -3);
   EXPECT_DOUBLE_EQ(linear.step, 0.5);

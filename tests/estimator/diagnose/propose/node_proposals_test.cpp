@@ -36,7 +36,7 @@ struct AtNode {
   }
 };
 
-TEST(NodeProposals, AHiddenOscillatorIsProposedFirst) {
+TEST(NodeProposals, ProposeAHiddenOscillatorFirst) {
   constexpr double kMass_kg = 3300, kFrequency_hz = 2.5;
   const AtNode at(test::effect_of(EffectKind::tuned_mass_damper, test::at_node(kFrame),
                                   {kMass_kg, kFrequency_hz, 0.05}));
@@ -48,7 +48,7 @@ TEST(NodeProposals, AHiddenOscillatorIsProposedFirst) {
   EXPECT_NEAR(parameters[1].plain() / kFrequency_hz, 1, kFrequencyOff);
 }
 
-TEST(NodeProposals, AHarmonicForceIsProposedWithItsFrequencySizeAndOnset) {
+TEST(NodeProposals, ProposeAHarmonicForceWithFrequencySizeAndOnset) {
   constexpr double kForce_n = 3000, kHz = 3.3, kFrom_s = 4;
   const AtNode at(test::effect_of(EffectKind::unmeasured_force, test::at_node(kFrame),
                                   {kForce_n, kHz, 0.4, 0, 0.1, 10, 1, kFrom_s}));
@@ -69,7 +69,7 @@ TEST(NodeProposals, AHarmonicForceIsProposedWithItsFrequencySizeAndOnset) {
             0.2 * misfit([](const ModelEffect& e) { return e.element_law(); }));
 }
 
-TEST(NodeProposals, AHarmonicForceThatMakesMostOfTheMotionHasItsFrequency) {
+TEST(NodeProposals, FindTheFrequencyOfADominantHarmonicForce) {
   constexpr double kForce_n = 1e5, kHz = 2.3;
   const AtNode at(test::effect_of(EffectKind::unmeasured_force, test::at_node(kFrame),
                                   {kForce_n, kHz, 0.4, 0, 0.1, 10, 1, 0}));
@@ -78,7 +78,7 @@ TEST(NodeProposals, AHarmonicForceThatMakesMostOfTheMotionHasItsFrequency) {
   EXPECT_NEAR(harmonic->parameters[0].plain() / kHz, 1, kForceHzOff);
 }
 
-TEST(NodeProposals, AForceThatGoesOnAtRestMayBeAnything) {
+TEST(NodeProposals, ProposeAFreeForceIfItContinuesAtRest) {
   const Recorded recorded(test::records_with({}));
   const Localisation place = recorded.freed(test::in_frame(kFrame));
   const RecordSegment& s = recorded.segments.front();
@@ -104,7 +104,7 @@ TEST(NodeProposals, AForceThatGoesOnAtRestMayBeAnything) {
   EXPECT_FALSE(offered(with_ground));
 }
 
-TEST(NodeProposals, OnlyElementsOfTheFirstStoryStandForANode) {
+TEST(NodeProposals, TreatOnlyFirstStoryElementsAsNodes) {
   EffectPlace panel;
   panel.kind = PlaceKind::panel;
   panel.story = 1;

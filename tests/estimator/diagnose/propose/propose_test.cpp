@@ -18,7 +18,7 @@ namespace propose_test {
 
 using test::Recorded;
 
-TEST(LinearProposals, ACrossingGetsAMassThatMayBeMissingAtMost) {
+TEST(LinearProposals, ProposeAMassAtACrossingBoundedBelow) {
   const Recorded recorded(test::records_with({}));
   const std::vector<Proposal> proposals =
       propose(recorded.fitter, recorded.freed(test::at_crossing(1)), 0);
@@ -30,7 +30,7 @@ TEST(LinearProposals, ACrossingGetsAMassThatMayBeMissingAtMost) {
   EXPECT_GT(mass.plain(), 0);
 }
 
-TEST(LinearProposals, ABuildingThatTurnsIsSoftNotNegative) {
+TEST(LinearProposals, ProposeAPositiveStiffnessForATurningBuilding) {
   const Recorded recorded(test::records_with({}));
   EffectPlace building;
   building.kind = PlaceKind::building;
@@ -47,7 +47,7 @@ TEST(LinearProposals, ABuildingThatTurnsIsSoftNotNegative) {
   }
 }
 
-TEST(LinearProposals, TheWhichthPlaceOfAPairIsMeant) {
+TEST(LinearProposals, UseTheGivenPlaceOfAPair) {
   const Recorded recorded(test::records_with({}));
   const Model model = recorded.linear().model;
   Localisation pair = recorded.freed(test::at_crossing(1));
@@ -100,11 +100,11 @@ void expect_first_upstairs(EffectKind kind, double size) {
   EXPECT_NEAR(proposals.front().model.effects.back().parameters[0].plain() / size, 1, kSizeOff);
 }
 
-TEST(LinearProposals, ASpringToTheGroundIsSized) {
+TEST(LinearProposals, EstimateASpringToTheGround) {
   expect_first_upstairs(EffectKind::added_spring, 6e3);
 }
 
-TEST(LinearProposals, ADamperToTheGroundIsSized) {
+TEST(LinearProposals, EstimateADamperToTheGround) {
   expect_first_upstairs(EffectKind::added_damper, 150);
 }
 
@@ -123,7 +123,7 @@ const Proposal* find(const std::vector<Proposal>& proposals, EffectKind kind) {
   return at == proposals.end() ? nullptr : &*at;
 }
 
-TEST(AxisProposals, GainStartsWhereTheReadingIs) {
+TEST(AxisProposals, GainStartsAtTheObservedReading) {
   for (const double gain : {-0.3, 0.08, 0.5}) {
     std::vector<Eigen::MatrixXd> records = test::records_with({});
     records[0].col(kChannel) *= 1 + gain;
@@ -137,7 +137,7 @@ TEST(AxisProposals, GainStartsWhereTheReadingIs) {
   }
 }
 
-TEST(AxisProposals, AnAxisTurnedRoundIsOfWrongPolarity) {
+TEST(AxisProposals, ProposeWrongPolarityForAReversedAxis) {
   std::vector<Eigen::MatrixXd> records = test::records_with({});
   records[0].col(kChannel) *= -1;
   const Recorded recorded(records);
@@ -165,7 +165,7 @@ TEST(AxisProposals, ClockStartsAtTheDelay) {
   }
 }
 
-TEST(AxisProposals, AnAxisMayBeTurnedTowardThoseAcrossItOnItsFloor) {
+TEST(AxisProposals, ProposeMisalignmentTowardCrossAxesOfTheFloor) {
   const Recorded recorded(test::records_with({}));
   std::vector<int> across;
   for (const Proposal& p : proposals_for(recorded)) {
@@ -178,7 +178,7 @@ TEST(AxisProposals, AnAxisMayBeTurnedTowardThoseAcrossItOnItsFloor) {
   EXPECT_EQ(across, (std::vector<int>{2, 3}));
 }
 
-TEST(AxisProposals, OnlyAReadingWithManyEqualPeaksIsClipped) {
+TEST(AxisProposals, ProposeClippingOnlyForManyEqualPeaks) {
   struct Clipped {
     double share;  ///< of the largest reading at which it is clipped
     bool proposed;

@@ -52,7 +52,7 @@ TEST(Fourier, ForwardIsTheSumOfSamples) {
   }
 }
 
-TEST(Fourier, KnownSignals) {
+TEST(Fourier, TransformsKnownSignals) {
   constexpr Index kSize = 60, kBin = 7, kAt = 11;
   constexpr double kAmplitude = 3, kPhase = 0.4;
   VectorXd wave(kSize), constant = VectorXd::Constant(kSize, kAmplitude), alternating(kSize);
@@ -134,7 +134,7 @@ struct Readings {
   }
 };
 
-TEST(Delay, IsFoundOfMotionOfAnySizeAndSign) {
+TEST(Delay, IsFoundForMotionOfAnySizeAndSign) {
   for (const double factor : {1.5, -0.7}) {
     const Readings r(factor);
     const Delay late = delay_between(r.first, r.second, kRate_hz, kBand);
@@ -146,7 +146,7 @@ TEST(Delay, IsFoundOfMotionOfAnySizeAndSign) {
   }
 }
 
-TEST(Delay, UnlikeReadingsHaveNone) {
+TEST(Delay, IsNotFoundForUnlikeReadings) {
   Random random(4);
   VectorXd first(kSamples), second(kSamples);
   for (Index i = 0; i < kSamples; ++i) {

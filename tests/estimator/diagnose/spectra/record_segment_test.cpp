@@ -44,7 +44,7 @@ RecordSegment segment_of(const MatrixXd& accel, const Band& band = kBand) {
   return make_segment(accel, kRate_hz, VectorXd::Ones(accel.cols()), band);
 }
 
-TEST(RecordSegmentSpectrum, AToneStandsInItsBin) {
+TEST(RecordSegmentSpectrum, PutsAToneIntoItsBin) {
   constexpr Index kBin = 50;
   constexpr double kAmplitude = 0.7, kPhase = 0.3, kMean = 5;
   const RecordSegment s = segment_of(tone(kBin, kAmplitude, kPhase, kMean));
@@ -55,7 +55,7 @@ TEST(RecordSegmentSpectrum, AToneStandsInItsBin) {
   EXPECT_NEAR(s.accel.mean(), 0, kRounding);
 }
 
-TEST(RecordSegmentSpectrum, BinsAreThoseOfTheBand) {
+TEST(RecordSegmentSpectrum, CoversTheBinsOfTheBand) {
   struct Case {
     Band band;
     Index first, last;
@@ -72,7 +72,7 @@ TEST(RecordSegmentSpectrum, BinsAreThoseOfTheBand) {
   }
 }
 
-TEST(RecordSegmentSpectrum, NothingToLookAt) {
+TEST(RecordSegmentSpectrum, IsEmptyWithoutSamplesOrBand) {
   for (const Band& band : {Band{5, 2}, Band{24.999, 30}, Band{1.001, 1.002}})
     EXPECT_EQ(segment_of(white(kIntervals + 1, 2, 1, 1), band).bins(), 0);
   for (const Index rows : {1, 2, 3}) {
@@ -82,13 +82,13 @@ TEST(RecordSegmentSpectrum, NothingToLookAt) {
   }
 }
 
-TEST(RecordSegmentSpectrum, IsCutToALengthThatTransformsFast) {
+TEST(RecordSegmentSpectrum, IsCutToAFastLength) {
   const RecordSegment s = segment_of(white(kIntervals + 8, 2, 1, 1));
   EXPECT_EQ(s.intervals(), kIntervals);
   EXPECT_DOUBLE_EQ(s.seconds(), kIntervals / kRate_hz);
 }
 
-TEST(RecordSegmentSpectrum, FirstAndLastSampleCountHalf) {
+TEST(RecordSegmentSpectrum, CountsFirstAndLastSampleHalf) {
   MatrixXd ends = MatrixXd::Zero(kIntervals + 1, 1);
   ends(0, 0) = 3;
   ends(kIntervals, 0) = 1;
@@ -96,7 +96,7 @@ TEST(RecordSegmentSpectrum, FirstAndLastSampleCountHalf) {
   EXPECT_LT((s.spectrum.array() - 2.0).matrix().norm(), kRounding * kIntervals);
 }
 
-TEST(RecordSegmentSpectrum, TheLeadComesBeforeAndHasTheSameMeanTakenOff) {
+TEST(RecordSegmentSpectrum, RemovesTheSameMeanFromTheLead) {
   constexpr Index kLead = 130;
   const MatrixXd record = white(kLead + kIntervals + 1, 3, 1, 2);
   const RecordSegment s = make_segment(record, kRate_hz, VectorXd::Ones(3), kBand, {}, kLead);
@@ -108,7 +108,7 @@ TEST(RecordSegmentSpectrum, TheLeadComesBeforeAndHasTheSameMeanTakenOff) {
   EXPECT_LT((s.lead - (record.topRows(kLead).rowwise() - mean)).norm(), kRounding);
 }
 
-TEST(RecordSegmentSpectrum, OfADisplacementIsThatOfItsAcceleration) {
+TEST(RecordSegmentSpectrum, ConvertsADisplacementToAcceleration) {
   constexpr Index kBin = 60;
   MatrixXd record(kIntervals + 1, 2);
   record << tone(kBin, 1, 0, 0), tone(kBin, 1, 0, 0);
@@ -121,7 +121,7 @@ TEST(RecordSegmentSpectrum, OfADisplacementIsThatOfItsAcceleration) {
             kRounding * kIntervals * s.w[at] * s.w[at]);
 }
 
-TEST(RecordSegmentNoise, IsGivenOrTakenFromTheRecord) {
+TEST(RecordSegmentNoise, IsGivenOrEstimatedFromTheRecord) {
   constexpr double kGiven = 0.25, kTolerance = 0.2;
   constexpr Index kLong = 6000;
   const VectorXd sd = Eigen::Vector2d(kGiven, 0);
@@ -145,7 +145,7 @@ TEST(RecordSegmentNoise, WhiteNoiseHasItsVarianceAtEveryRate) {
   }
 }
 
-TEST(RecordSegmentNoise, OfAnExactOrAShortRecordIsTheLeastThatCounts) {
+TEST(RecordSegmentNoise, HasALowerBound) {
   const double least = quiet_noise_variance(VectorXd::Zero(1000), kRate_hz);
   EXPECT_GT(least, 0);
   EXPECT_LT(least, 1e-12);

@@ -23,7 +23,7 @@ RowMatrix random_rows(Index rows, Index columns, std::uint64_t seed) {
   return out;
 }
 
-TEST(RowProduct, IsThatOfMatrices) {
+TEST(RowProduct, EqualsTheProductOfMatrices) {
   struct Case {
     Index rows, inner, columns;
   };
@@ -37,7 +37,7 @@ TEST(RowProduct, IsThatOfMatrices) {
   }
 }
 
-TEST(RowProduct, ColumnsBeyondTheRowsOfTheOtherAreNotLookedAt) {
+TEST(RowProduct, IgnoresColumnsBeyondTheRowsOfTheOther) {
   RowMatrix a = random_rows(3, 6, 1);
   const RowMatrix b = random_rows(4, 8, 2);
   RowMatrix expected, out;
@@ -64,7 +64,7 @@ TEST(RowGram, IsTheSumOfOuterProducts) {
   }
 }
 
-TEST(RowGram, WhatIsWrittenIsPaddedWithZeros) {
+TEST(RowGram, PadsWithZeros) {
   constexpr Index kColumns = 6, kRows = 3;
   RowGram gram(kColumns);
   const RowMatrix rows = random_rows(kRows, kColumns, 4);
@@ -74,7 +74,7 @@ TEST(RowGram, WhatIsWrittenIsPaddedWithZeros) {
   EXPECT_TRUE(gram.written().rightCols(gram.written().cols() - kColumns).isZero(0));
 }
 
-TEST(RowGram, ASumOfManyIsThatOfParts) {
+TEST(RowGram, TheSumEqualsTheSumOfParts) {
   constexpr Index kColumns = 7, kBins = 50, kRows = 8;
   RowGram all(kColumns), even(kColumns), odd(kColumns);
   for (Index b = 0; b < kBins; ++b) {

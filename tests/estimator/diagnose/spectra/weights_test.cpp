@@ -46,7 +46,7 @@ std::vector<Whitener> whiteners_of(const std::vector<MatrixXcd>& matrices) {
   return out;
 }
 
-TEST(Weights, ForcesAreThoseOfTheirWhitenedRows) {
+TEST(Weights, ForcesMatchTheirWhitenedRows) {
   constexpr double kRounding = 1e-10;
   const Some some;
   MatrixXd read = MatrixXd::Zero(kEquations, 2);
@@ -71,7 +71,7 @@ TEST(Weights, ForcesAreThoseOfTheirWhitenedRows) {
 }
 
 /// Large buildings with unread motions have whiteners that are not triangular.
-TEST(Weights, OfMotionsThatAreNotAllReadAreWhole) {
+TEST(Weights, StayCompleteWithUnreadMotions) {
   constexpr Index kLarge = 30, kRead = 4;
   Random random{5};
   const auto any = [&](Index rows, Index columns) {
@@ -118,7 +118,7 @@ MatrixXd columns_of_ends(const Some& some) {
   return out.colwise().normalized();
 }
 
-TEST(Weights, EndTermsAreThoseOfTheEquations) {
+TEST(Weights, EndTermsMatchTheEquations) {
   constexpr double kRounding = 1e-12;
   Some some;
   const Weights weights(whiteners_of(some.whitener), some.w, {some.hidden});
@@ -154,7 +154,7 @@ TEST(Weights, EndTermsAreProjectedOut) {
   EXPECT_LT(weights.without_ends(ends * VectorXd::Ones(ends.cols())).norm(), kLeft);
 }
 
-TEST(Weights, OneBinIsExplainedByItsEnds) {
+TEST(Weights, EndTermsExplainASingleBin) {
   constexpr double kLeft = 1e-6;
   Some some;
   some.hidden.transmissibility.conservativeResize(1);

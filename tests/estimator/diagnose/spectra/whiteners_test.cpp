@@ -60,7 +60,7 @@ double miss(const MatrixXcd& whitener, const MatrixXcd& covariance) {
       .maxCoeff();
 }
 
-TEST(Whiteners, NoiseOfEveryBinGetsUnitCovariance) {
+TEST(Whiteners, GiveTheNoiseOfEveryBinUnitCovariance) {
   for (const Index bins : kBinCounts) {
     const Equations e(bins);
     const std::vector<MatrixXcd> all = whole(whiteners(e.of_bin(), e.noise, {}));
@@ -80,7 +80,7 @@ TEST(Whiteners, AreLowerTrianglesWithAPositiveDiagonal) {
   }
 }
 
-TEST(Whiteners, OfOneEquationIsOneOverItsDeviation) {
+TEST(Whiteners, AreOneOverTheDeviationForOneEquation) {
   const Equations e(3, 1, 2);
   const std::vector<MatrixXcd> all = whole(whiteners(e.of_bin(), e.noise, {}));
   for (std::size_t b = 0; b < all.size(); ++b)
@@ -125,7 +125,7 @@ TEST(Whiteners, UnreadMotionsAreEliminated) {
   }
 }
 
-TEST(Whiteners, ThereAreNoneWhereAnEquationHasNoNoise) {
+TEST(Whiteners, DoNotExistIfAnEquationHasNoNoise) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const Index bad : {0, 8, 10}) {
     Equations silent(11), dependent(11, 2), unknown(11);
@@ -159,7 +159,7 @@ MatrixXcd random_matrix(Index equations, bool triangular) {
   return out;
 }
 
-TEST(Whitener, IsTheMatrixThatItWasMadeOf) {
+TEST(Whitener, ReturnsItsMatrix) {
   for (const bool triangular : {true, false})
     for (const Index n : kSizes) {
       const MatrixXcd whole = random_matrix(n, triangular);

@@ -98,7 +98,7 @@ TEST(CatalogueForm, SignsSurviveTheRoundTrip) {
   }
 }
 
-TEST(CatalogueForm, APowerBetweenIsTheCataloguesAtTheLargestDeformation) {
+TEST(CatalogueForm, AFractionalPowerMatchesTheCatalogueAtTheLargestDeformation) {
   // 700 N at 4 mm, for any exponent.
   const Scene scene;
   constexpr double kForce_n = 700, kPeak_m = 4e-3;
@@ -117,7 +117,7 @@ TEST(CatalogueForm, APowerBetweenIsTheCataloguesAtTheLargestDeformation) {
   }
 }
 
-TEST(CatalogueForm, RigidHysteresisIsFrictionOfItsYieldForce) {
+TEST(CatalogueForm, RigidHysteresisBecomesFrictionOfItsYieldForce) {
   const Scene scene;
   Model fitted = initial_model(scene.plant);
   const Effect corner = test::example_effect(EffectKind::bilinear_hysteresis, scene.model);
@@ -142,7 +142,7 @@ TEST(CatalogueForm, NoChangeBeginsBeforeTheRecord) {
   }
 }
 
-TEST(CatalogueForm, ClippingLevelIsThatOfTheRecordThatIsCutOffFirst) {
+TEST(CatalogueForm, ClippingLevelIsTheLowestOfAllRecords) {
   const test::Recorded recorded(test::records_with({}, {1, 2}));
   FoundEffect found;
   found.chosen.kind = EffectKind::clipping;
@@ -217,7 +217,7 @@ TEST(ParameterErrors, CostRisesByHalfTheSquareOfTheDeviations) {
   }
 }
 
-TEST(ParameterErrors, FitsOfRecordsWithOtherNoiseSpreadAsMuch) {
+TEST(ParameterErrors, MatchTheScatterOverOtherNoise) {
   constexpr int kFits = 40;
   constexpr double kNoise_mps2 = 0.03;
   const Effect gain = test::effect_of(EffectKind::gain_error, test::at_channel(1), {0.0});
@@ -245,7 +245,7 @@ TEST(ParameterErrors, FitsOfRecordsWithOtherNoiseSpreadAsMuch) {
   }
 }
 
-TEST(ParameterErrors, MoreMisfitThanNoiseMakesThemAsMuchLarger) {
+TEST(ParameterErrors, GrowWithTheMisfitBeyondTheNoise) {
   constexpr double kLess = 9;
   const Effect mass = test::effect_of(EffectKind::extra_mass, test::at_crossing(1), {3000});
   const Recorded recorded(test::records_with({mass}), kExact);
@@ -257,7 +257,7 @@ TEST(ParameterErrors, MoreMisfitThanNoiseMakesThemAsMuchLarger) {
   EXPECT_NEAR(of_quiet / told, 1, kScaleOff);
 }
 
-TEST(ParameterErrors, AreOfTheCataloguesUnits) {
+TEST(ParameterErrors, HaveTheCataloguesUnits) {
   // The angle is fitted in rad and given in degrees.
   EffectPlace pair = test::at_channel(0);
   pair.kind = PlaceKind::channel_pair;
@@ -277,7 +277,7 @@ TEST(ParameterErrors, AreOfTheCataloguesUnits) {
   EXPECT_NEAR((others.cost - fitted.fit.cost) / 2, 1, kCurvatureOff);
 }
 
-TEST(ParameterErrors, ARampIsLeftAlone) {
+TEST(ParameterErrors, LeaveOutARamp) {
   const Recorded recorded(test::records_with({}));
   const FittedEffects fitted(
       recorded.fitter, {test::effect_of(EffectKind::bias_drift, test::at_channel(1), {0.02, 1})});

@@ -12,7 +12,7 @@ namespace found_effect_test {
 
 using test::HandMade;
 
-TEST(EffectOf, TheBestTrialWithTheOthersBesideIt) {
+TEST(EffectOf, TakesTheBestTrialAndKeepsRivals) {
   const HandMade made;
   const std::vector<Trial> trials{made.trial(EffectKind::cubic_stiffness, 500),
                                   made.trial(EffectKind::cubic_stiffness, 490),
@@ -24,7 +24,7 @@ TEST(EffectOf, TheBestTrialWithTheOthersBesideIt) {
   EXPECT_TRUE(found.like.empty());
 }
 
-TEST(EffectOf, IsAsSureAsTheBestRivalIsFar) {
+TEST(EffectOf, IsAsConfidentAsTheBestRivalIsFar) {
   const HandMade made;
   const auto confidence = [&](double margin) {
     return effect_of({made.trial(EffectKind::cubic_stiffness, 500),
@@ -36,7 +36,7 @@ TEST(EffectOf, IsAsSureAsTheBestRivalIsFar) {
   EXPECT_NEAR(effect_of({made.trial(EffectKind::cubic_stiffness, 500)}).confidence, 0.999, 1e-12);
 }
 
-TEST(EffectOf, SaysWhichNamesAreAsGood) {
+TEST(EffectOf, ListsEquallyGoodNames) {
   const HandMade made;
   const FoundEffect found =
       effect_of({made.trial(EffectKind::cubic_stiffness, 500),

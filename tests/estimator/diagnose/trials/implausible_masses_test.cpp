@@ -22,7 +22,7 @@ std::vector<Eigen::MatrixXd> records_with_mass(double mass_kg) {
       {test::effect_of(EffectKind::extra_mass, test::at_crossing(kCrossing), {mass_kg})});
 }
 
-TEST(ImplausibleMasses, OneExtraMassDoesAwayWithThem) {
+TEST(ImplausibleMasses, AreExplainedByOneExtraMass) {
   constexpr double kMass_kg = 5000;
   const HandMade made(records_with_mass(kMass_kg));
   const std::vector<Trial> trials = masses_of(made);
@@ -35,7 +35,7 @@ TEST(ImplausibleMasses, OneExtraMassDoesAwayWithThem) {
   EXPECT_LE(trials[0].fraction, 1);
 }
 
-TEST(ImplausibleMasses, MassesWithinChanceAreLeft) {
+TEST(ImplausibleMasses, MassesWithinChanceAreKept) {
   const HandMade nothing;
   EXPECT_TRUE(masses_of(nothing).empty());
   // Half a percent of a frame's mass.
@@ -43,18 +43,18 @@ TEST(ImplausibleMasses, MassesWithinChanceAreLeft) {
   EXPECT_TRUE(masses_of(little).empty());
 }
 
-TEST(ImplausibleMasses, MassesThatAreExactAreNotLookedAt) {
+TEST(ImplausibleMasses, ExactMassesAreNotTried) {
   const HandMade made(records_with_mass(5000), {0, 0.005, 0.25e-3});
   EXPECT_TRUE(masses_of(made).empty());
 }
 
-TEST(ImplausibleMasses, AMassThatIsMissingIsNoEffect) {
+TEST(ImplausibleMasses, AMissingMassIsNoEffect) {
   const HandMade made(records_with_mass(-4000));
   for (const Trial& t : masses_of(made))
     EXPECT_GT(t.model.effects.back().parameters[0].plain(), 0) << name_of(t.kind);
 }
 
-TEST(ImplausibleMasses, NamesThatAreTakenOutAreNotTried) {
+TEST(ImplausibleMasses, ExcludedNamesAreNotTried) {
   HandMade made(records_with_mass(5000));
   made.without = {EffectKind::extra_mass};
   for (const Trial& t : masses_of(made)) EXPECT_NE(t.kind, EffectKind::extra_mass);

@@ -28,7 +28,7 @@ struct Known {
         effects(add_known(recorded.plant, recorded.segments, known, model)) {}
 };
 
-TEST(KnownEffects, AxisErrorsAreNoMembersOfTheModelsEffects) {
+TEST(KnownEffects, AxisErrorsAreNotAmongTheModelsEffects) {
   const Known with({effect_of(EffectKind::gain_error, test::at_channel(0), {0.1}),
                     effect_of(EffectKind::polarity, test::at_channel(1), {}),
                     effect_of(EffectKind::time_shift, test::at_channel(2), {0.012}),
@@ -50,7 +50,7 @@ TEST(KnownEffects, AxisErrorsAreNoMembersOfTheModelsEffects) {
   EXPECT_EQ(known[3].ramp_from_s, std::vector<double>{1});
 }
 
-TEST(KnownEffects, IndicesCountTheModelsEffectsAlone) {
+TEST(KnownEffects, IndicesCountOnlyTheModelsEffects) {
   const Known with({effect_of(EffectKind::extra_mass, test::at_crossing(0), {300}),
                     effect_of(EffectKind::gain_error, test::at_channel(0), {0.1}),
                     effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {1e9})});
@@ -79,7 +79,7 @@ TEST(KnownEffects, ScalesAreTheLargestMotionOfAnyRecord) {
   EXPECT_NEAR(LawMotion(first.law(0)).force(d, 0, 0), 1e9 * std::pow(d, 3), 1e-6);
 }
 
-TEST(KnownEffects, AWeightIsKnownAndNotFitted) {
+TEST(KnownEffects, AKnownMassIsNotFitted) {
   constexpr double kWeight_n = 2e5, kDrift_m = 3e-3;
   const Known with({effect_of(EffectKind::p_delta, test::in_frame(2), {kWeight_n})});
   const ModelEffect& law = with.model.effects.front();

@@ -20,7 +20,7 @@ ModelEffect mass_at(int crossing) {
   return out;
 }
 
-TEST(LinearGains, AStepTellsWhatAFitMakesOfAnEffect) {
+TEST(LinearGains, PredictTheFitOfAnEffectInOneStep) {
   constexpr double kMass_kg = 3000, kOff = 0.15;
   constexpr int kCrossing = 1;
   const HandMade made(test::records_with(
@@ -38,14 +38,14 @@ TEST(LinearGains, AStepTellsWhatAFitMakesOfAnEffect) {
     EXPECT_TRUE(i == kCrossing || gains[i].cost < gains[kCrossing].cost) << i;
 }
 
-TEST(LinearGains, WhereNothingIsMissingNothingIsGained) {
+TEST(LinearGains, AreZeroIfNothingIsMissing) {
   constexpr double kChance = 12;
   const HandMade nothing;
   for (const LinearGain& gain : linear_gains(nothing.context(), {mass_at(0), mass_at(3)}))
     EXPECT_LT(gain.cost, kChance);
 }
 
-TEST(LinearGains, AModelThatCannotBeComputedGainsNothing) {
+TEST(LinearGains, AreZeroForAnInvalidModel) {
   HandMade broken;
   broken.now.model.theta.setConstant(std::nan(""));
   EXPECT_EQ(linear_gains(broken.context(), {mass_at(0)}).front().cost, 0);

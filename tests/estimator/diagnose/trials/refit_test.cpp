@@ -14,7 +14,7 @@
 namespace framewatch::estimator {
 namespace refit_test {
 
-TEST(TakesNothing, IsWhatNoMotionNeeds) {
+TEST(RedundantEffect, IsDetected) {
   const test::HandMade made(test::records_with(
       {test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {1e10})}, {1, 2}));
   const std::vector<Trial> trials =
@@ -39,7 +39,7 @@ using test::Recorded;
 constexpr double kGain = 0.08, kGainOff = 0.01;
 constexpr double kSizeOff = 0.1;
 
-TEST(DeclaredModel, TakesBackWhatIsOnlyTolerated) {
+TEST(DeclaredModel, ResetsToleratedErrors) {
   std::vector<Eigen::MatrixXd> records = test::records_with({});
   records[0].col(1) *= 1 + kGain;
   const Recorded recorded(records);

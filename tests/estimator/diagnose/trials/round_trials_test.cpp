@@ -47,14 +47,14 @@ Located located_beside_the_spring(HandMade& made) {
   return out;
 }
 
-TEST(PlacesBesideALaw, AreNoneWhereItsShapeIsWhatIsLeft) {
+TEST(PlacesBesideALaw, AreNotTriedIfOnlyTheLawsShapeIsWrong) {
   HandMade made(test::records_with({yielding()}));
   const Located located = located_beside_the_spring(made);
   for (const Localisation& place : located.places)
     EXPECT_EQ(place.candidate_places.front().place, test::in_frame(kFrame));
 }
 
-TEST(PlacesBesideALaw, AreThoseOfAnotherEffect) {
+TEST(PlacesBesideALaw, AreTriedForAnotherEffect) {
   std::vector<Eigen::MatrixXd> records = test::records_with({yielding()});
   records[0].col(kChannel) *= 1 + kGain;
   HandMade made(records);

@@ -42,7 +42,7 @@ struct Excess {
   }
 };
 
-TEST(AdoptTrials, NoneIsAdoptedWhenNoneWasFitted) {
+TEST(AdoptTrials, AdoptsNoneIfNoneWasFitted) {
   const Excess excess;
   std::vector<Trial> none;
   EXPECT_FALSE(excess.adopted(none));
@@ -53,7 +53,7 @@ TEST(AdoptTrials, NoneIsAdoptedWhenNoneWasFitted) {
   EXPECT_FALSE(excess.adopted(unfitted));
 }
 
-TEST(NearestLaw, IsAnElementsAndTakesMostOfTheMisfit) {
+TEST(NearestLaw, IsALawOfAnElementThatExplainsMostOfTheMisfit) {
   constexpr double kNearest = 0.8;
   HandMade made;
   made.now.misfit[0] += kExcess;
@@ -68,12 +68,12 @@ TEST(NearestLaw, IsAnElementsAndTakesMostOfTheMisfit) {
   };
   EXPECT_TRUE(nearest(kNearest + kNear, LawForm::power));
   EXPECT_FALSE(nearest(kNearest - kNear, LawForm::power));
-  EXPECT_FALSE(nearest(kNearest + kNear, LawForm::damper)) << "has no shape of its own";
+  EXPECT_FALSE(nearest(kNearest + kNear, LawForm::damper)) << "has no shape";
   EXPECT_FALSE(nearest(kNearest + kNear, LawForm::power, 2)) << "a record gets worse";
   EXPECT_FALSE(is_nearest_law(made.context(), made.trial(EffectKind::gain_error, kExcess)));
 }
 
-TEST(AdoptTrials, BestFirstAndUnfittedLast) {
+TEST(AdoptTrials, OrdersBestFirstAndUnfittedLast) {
   const Excess excess;
   std::vector<Trial> trials;
   for (const double share : {0.2, 0.99, 0.98, 0.5}) trials.push_back(excess.with_share(share));
@@ -85,7 +85,7 @@ TEST(AdoptTrials, BestFirstAndUnfittedLast) {
   EXPECT_EQ(trials.back().outcome, TrialOutcome::diverged);
 }
 
-TEST(AdoptTrials, ALawTakesMostOfTheExcessAway) {
+TEST(AdoptTrials, AdoptsALawThatExplainsMostOfTheExcess) {
   struct Share {
     double share, needed;
     bool adopted;
@@ -108,14 +108,14 @@ TEST(AdoptTrials, ALawTakesMostOfTheExcessAway) {
   }
 }
 
-TEST(AdoptTrials, WhatChanceDoesAsWellIsNotAdopted) {
+TEST(AdoptTrials, AdoptsNoGainWithinChance) {
   const Excess excess;
   std::vector<Trial> trials{excess.with_share(1)};
   EXPECT_FALSE(excess.adopted(trials, 1.01 * kExcess));
   EXPECT_TRUE(excess.adopted(trials, 0.99 * kExcess));
 }
 
-TEST(AdoptTrials, NoRecordMayGetWorse) {
+TEST(AdoptTrials, AdoptsNothingThatMakesARecordWorse) {
   const Excess excess;
   const double record = excess.made.now.misfit[0];
   for (const double near : {-1.0, 1.0}) {
@@ -136,7 +136,7 @@ TEST(AdoptTrials, TwoEffectsMustBeatOneByMoreThanChance) {
   }
 }
 
-TEST(AdoptTrials, EveryFittedValueHasItsPrice) {
+TEST(AdoptTrials, EveryFittedValueHasACost) {
   const Excess excess;
   const double of_value =
       0.5 * std::log(excess.made.recorded.fitter.expected(excess.made.now.model));
@@ -158,7 +158,7 @@ TEST(AdoptTrials, EveryFittedValueHasItsPrice) {
   }
 }
 
-TEST(AdoptTrials, AForceThatMayBeAnythingYieldsToALaw) {
+TEST(AdoptTrials, PrefersALawToAFreeForce) {
   const Excess excess;
   Trial any = excess.with_share(1, EffectKind::unmeasured_force);
   ModelEffect effect;
@@ -173,7 +173,7 @@ TEST(AdoptTrials, AForceThatMayBeAnythingYieldsToALaw) {
   EXPECT_EQ(trials[0].kind, EffectKind::unmeasured_force);
 }
 
-TEST(AdoptTrials, ABluntFitIsSharpenedUnlessItIsHopeless) {
+TEST(AdoptTrials, RefinesACoarseFitUnlessItIsHopeless) {
   // A hidden mass, in a trial with half of it, and in a trial far behind.
   constexpr double kMass_kg = 6000, kOff = 0.1;
   HandMade made(test::records_with(
@@ -226,7 +226,7 @@ struct Tried {
   }
 };
 
-TEST(LawsInItsStead, TheBetterOneStays) {
+TEST(ReplacementLaw, TheBetterLawIsChosen) {
   Tried tried;
   FoundEffect effect = tried.found(false);
   FitResult now = tried.made.now;
@@ -237,7 +237,7 @@ TEST(LawsInItsStead, TheBetterOneStays) {
   EXPECT_LT(now.cost, before);
 }
 
-TEST(LawsInItsStead, TheRightOneStaysAndIsSure) {
+TEST(ReplacementLaw, TheRightLawStaysWithHighConfidence) {
   Tried tried;
   FoundEffect effect = tried.found(true);
   FitResult now = tried.made.now;

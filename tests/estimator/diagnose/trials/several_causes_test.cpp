@@ -45,7 +45,7 @@ bool names(const SeveralCauses& several, EffectKind kind, const EffectPlace& pla
   });
 }
 
-TEST(SeveralCauses, TwoThatActAtOnceAreFoundTogether) {
+TEST(SeveralCauses, TwoSimultaneousOnesAreFoundTogether) {
   const HandMade made(records_of_two_causes());
   const std::vector<Trial> tried =
       tried_at(made, {test::in_frame(2), test::at_channel(0), test::at_channel(1)});
@@ -57,7 +57,7 @@ TEST(SeveralCauses, TwoThatActAtOnceAreFoundTogether) {
   ASSERT_EQ(several.model.effects.size(), 1U);
 }
 
-TEST(SeveralCauses, WithoutHeldOutRecordsNothingIsChosen) {
+TEST(SeveralCauses, NoneIsChosenWithoutHeldOutRecords) {
   const HandMade made(records_of_one_cause());
   const std::vector<Trial> tried = tried_at(made, {test::at_channel(0)});
   EXPECT_FALSE(several_causes(made.context(), tried, 1).causes.empty());
@@ -65,7 +65,7 @@ TEST(SeveralCauses, WithoutHeldOutRecordsNothingIsChosen) {
   EXPECT_TRUE(several_causes(made.context(), {}, 1).causes.empty());
 }
 
-TEST(SeveralCauses, NamesThatAreTakenOutAndForcesFromNowhereAreNoCauses) {
+TEST(SeveralCauses, ExcludedNamesAndExternalForcesAreNotChosen) {
   HandMade made(records_of_one_cause());
   std::vector<Trial> tried = tried_at(made, {test::at_channel(0)});
   std::erase_if(tried, [](const Trial& t) { return t.kind != EffectKind::gain_error; });
@@ -77,7 +77,7 @@ TEST(SeveralCauses, NamesThatAreTakenOutAndForcesFromNowhereAreNoCauses) {
   EXPECT_TRUE(several_causes(made.context(), tried, 1).causes.empty());
 }
 
-TEST(SeveralCauses, ACauseThatMakesAHeldOutRecordWorseIsNotChosen) {
+TEST(SeveralCauses, OneThatMakesAHeldOutRecordWorseIsNotChosen) {
   std::vector<Eigen::MatrixXd> records = test::records_with({}, {1, 2});
   records[0].col(0) *= 1 + kGain;  // of the training record alone
   const HandMade made(records);
@@ -87,7 +87,7 @@ TEST(SeveralCauses, ACauseThatMakesAHeldOutRecordWorseIsNotChosen) {
 
 /// With other causes, the best law may be one that was second at its place: hysteresis of another
 /// name than the one that got a free run there.
-TEST(SeveralCauses, HysteresisThatHadNoFreeRunMayBeACause) {
+TEST(SeveralCauses, HysteresisWithoutAFreeRunMayBeChosen) {
   const HandMade made(test::records_with(
       {test::effect_of(EffectKind::bouc_wen, test::in_frame(2), {4e6, 0.004, 1, 0.5})}, {1, 2}));
   std::vector<Trial> tried = tried_at(made, {test::in_frame(2)});

@@ -68,7 +68,7 @@ ModelEffect oscillator(double mass_kg, double hz, double damping) {
                       logarithmic_parameter(damping, 1e-3, 2)});
 }
 
-TEST(TrialNames, AnOscillatorIsSeenLighterThanItsFloorAndDamped) {
+TEST(TrialNames, AnOscillatorIsLighterThanItsFloorAndDamped) {
   constexpr double kDulled = 0.4;
   const HandMade made;
   const double floor_kg = made.recorded.plant.structure.frame_mass(1, 2), kg = 0.1 * floor_kg;
@@ -95,7 +95,7 @@ ModelEffect slipping(double yield, double ratio, double width) {
        bounded_parameter(ratio, 0.02, 0.3, 0.99), logarithmic_parameter(width, 0.05, 1)});
 }
 
-TEST(TrialNames, ASlipZoneIsInWhatYieldsAndWideEnoughToBeOne) {
+TEST(TrialNames, ASlipZoneNeedsYieldingAndWidth) {
   expect_named(EffectKind::pinching,
                {{"a pinched loop", slipping(0.2, 0.9, 0.3), true},
                 {"hardly yields", slipping(2.5, 0.9, 0.3), false},
@@ -106,7 +106,7 @@ TEST(TrialNames, ASlipZoneIsInWhatYieldsAndWideEnoughToBeOne) {
                 {"at its largest width", slipping(0.2, 0.9, 1), false}});
 }
 
-TEST(TrialNames, NamesThatAreTakenOutAreNotGiven) {
+TEST(TrialNames, ExcludedNamesAreNotGiven) {
   HandMade made;
   Trial t = made.trial(EffectKind::extra_mass, 1);
   EXPECT_TRUE(may_be_named(made.context(), t));
@@ -134,7 +134,7 @@ Trial taken(const HandMade& made, EffectKind first, EffectKind second,
   return out;
 }
 
-TEST(TrialNames, ATrialTakesTheNameOfWhatItWasFittedTo) {
+TEST(TrialNames, ATrialTakesTheNameOfItsFit) {
   const ModelEffect power = effect_with(LawForm::power, test::in_frame(2),
                                         {linear_parameter(1, 1), linear_parameter(2.1, 1)});
   const ModelEffect friction =
@@ -156,7 +156,7 @@ TEST(TrialNames, AnAxisErrorKeepsItsNameAndTakesNoEffects) {
   EXPECT_EQ(name_of(t.second->first), "extra_mass");
 }
 
-TEST(TrialNames, AreThoseOfTheLastFitsShapes) {
+TEST(TrialNames, FollowTheShapesOfTheLastFit) {
   HandMade made;
   made.now.model.effects.push_back(effect_with(LawForm::power, test::in_frame(1),
                                                {linear_parameter(1, 1), linear_parameter(2, 1)}));
@@ -177,7 +177,7 @@ TEST(TrialNames, AreThoseOfTheLastFitsShapes) {
   EXPECT_EQ(effects[0].chosen.kind, EffectKind::cubic_stiffness);
 }
 
-TEST(TrialNames, WhatIsNotLookedAtCostsAsMuchAsItsBins) {
+TEST(TrialNames, IgnoredEquationsCostOnePerBin) {
   const HandMade made;
   const Trial t = taken(made, EffectKind::unmeasured_force, EffectKind::gain_error,
                         {effect_with(LawForm::broadband, test::at_node(2), {})});

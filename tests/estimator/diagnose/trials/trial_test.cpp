@@ -18,14 +18,14 @@ TEST(SameSpot, AStoryIsPartOfItsFrame) {
   EXPECT_FALSE(same_spot(whole, test::at_channel(1)));
 }
 
-TEST(SameSpot, AForceAtTheFirstFloorIsOneOnItsFrame) {
+TEST(SameSpot, AForceAtTheFirstFloorEqualsOneOnItsFrame) {
   EXPECT_TRUE(same_spot(test::in_frame(1), test::at_node(1)));
   EffectPlace upper = test::at_node(1), frame = test::in_frame(1);
   upper.story = frame.story = 2;
   EXPECT_FALSE(same_spot(frame, upper));
 }
 
-TEST(SameSpot, AStopBetweenAFloorAndTheGroundIsAtTheFloor) {
+TEST(SameSpot, AStopToTheGroundIsAtItsFloor) {
   EffectPlace floor = test::at_node(1), stop;
   floor.story = 3;
   stop = floor;
@@ -35,7 +35,7 @@ TEST(SameSpot, AStopBetweenAFloorAndTheGroundIsAtTheFloor) {
   EXPECT_FALSE(same_spot(stop, floor));
 }
 
-TEST(CommonFrame, IsThatOfTwoStories) {
+TEST(CommonFrame, IsTheFrameOfTwoStories) {
   Trial pair;
   pair.place = test::in_frame(2);
   EXPECT_EQ(common_frame(pair), -1);

@@ -34,7 +34,7 @@ const Trial& cheapest(const std::vector<Trial>& trials) {
   });
 }
 
-TEST(Trials, AReadingsErrorIsFittedToItsEnd) {
+TEST(Trials, FitTheErrorOfAReadingToConvergence) {
   std::vector<Eigen::MatrixXd> records = test::records_with({});
   records[0].col(1) *= 1 + kGain;
   const HandMade made(records);
@@ -49,7 +49,7 @@ TEST(Trials, AReadingsErrorIsFittedToItsEnd) {
   EXPECT_EQ(best.misfit.size(), 1U);
 }
 
-TEST(Trials, NamesThatAreTakenOutAreNotTried) {
+TEST(Trials, SkipExcludedNames) {
   HandMade made;
   made.without = {EffectKind::gain_error, EffectKind::misalignment};
   const std::vector<Trial> trials =
@@ -58,7 +58,7 @@ TEST(Trials, NamesThatAreTakenOutAreNotTried) {
   for (const Trial& t : trials) EXPECT_EQ(name_of(t.kind), "time_shift");
 }
 
-TEST(Trials, ReadingsThatAreExchangedAreOneEffectOfTwoPlaces) {
+TEST(Trials, TreatExchangedReadingsAsOneEffectOfTwoPlaces) {
   std::vector<Eigen::MatrixXd> records = test::records_with({});
   records[0].col(2).swap(records[0].col(1));
   const HandMade made(records);
@@ -72,7 +72,7 @@ TEST(Trials, ReadingsThatAreExchangedAreOneEffectOfTwoPlaces) {
   EXPECT_FALSE(best.second.has_value());
 }
 
-TEST(Trials, TwoReadingsOfWrongGainAreTwoEffects) {
+TEST(Trials, TreatTwoWrongGainsAsTwoEffects) {
   std::vector<Eigen::MatrixXd> records = test::records_with({});
   records[0].col(0) *= 1 + kGain;
   records[0].col(3) *= 1 - kGain;
@@ -88,7 +88,7 @@ TEST(Trials, TwoReadingsOfWrongGainAreTwoEffects) {
   EXPECT_EQ(best.model.free_gain.size(), 2U);
 }
 
-TEST(Trials, OnlyTheShapeOfRoundHysteresisIsFreed) {
+TEST(Trials, FreeOnlyTheShapeOfRoundHysteresis) {
   constexpr double kRound = 2, kCorner = 40;
   for (const LawForm form : {LawForm::hysteresis, LawForm::pinched, LawForm::power})
     for (const double exponent : {kRound, kCorner}) {
@@ -106,7 +106,7 @@ TEST(Trials, OnlyTheShapeOfRoundHysteresisIsFreed) {
     }
 }
 
-TEST(Trials, TheWeakestRecordIsNotAskedWhereThereIsOneOrTimesOfItsOwn) {
+TEST(Trials, UseTheWeakestRecordOnlyAmongSeveralWithoutTimes) {
   const HandMade one;
   EXPECT_EQ(fitted_to_the_weakest(one.context(), one.now.model).theta, one.now.model.theta);
   HandMade two(test::records_with({}, {1, 2}));
@@ -117,7 +117,7 @@ TEST(Trials, TheWeakestRecordIsNotAskedWhereThereIsOneOrTimesOfItsOwn) {
   EXPECT_NE(fitted_to_the_weakest(two.context(), two.now.model).theta, two.now.model.theta);
 }
 
-TEST(Trials, ASharpenedTrialIsNeverWorse) {
+TEST(Trials, RefiningATrialNeverMakesItWorse) {
   const HandMade made;
   const Trial fitted = made.trial(EffectKind::gain_error, 0);
   EXPECT_LE(refined(made.context(), fitted, fitted.model).cost, fitted.cost);
@@ -127,7 +127,7 @@ TEST(Trials, ASharpenedTrialIsNeverWorse) {
   EXPECT_LT(refined(made.context(), poor, far).cost, made.now.cost + 1);
 }
 
-TEST(RoundTrials, BoundIsTheMisfitOfAllEquations) {
+TEST(RoundTrials, TheBoundIsTheMisfitOfAllEquations) {
   const HandMade made;
   const double equations = static_cast<double>(made.recorded.plant.equations());
   Localisation place = made.recorded.freed(test::in_frame(2));

@@ -81,7 +81,7 @@ Diagnosis diagnosed(const test::Small& small, const std::vector<Effect>& effects
   return diagnose(plant, segments, test::held_out_from(1));
 }
 
-TEST(DampingForm, ARatioOfEveryModeIsAdequate) {
+TEST(DampingForm, AcceptsARatioForEveryMode) {
   const test::Small small = two_stories();
   const Diagnosis d = diagnosed(small, ratios());
   EXPECT_EQ(d.verdict, Verdict::adequate);
@@ -93,7 +93,7 @@ TEST(DampingForm, ARatioOfEveryModeIsAdequate) {
     EXPECT_NEAR(found[mode], true_ratios[mode], 0.1 * true_ratios[mode]) << mode + 1;
 }
 
-TEST(DampingForm, DampingThatGoesWithTheMassesIsAdequate) {
+TEST(DampingForm, AcceptsMassProportionalDamping) {
   test::Small small = two_stories();
   const std::vector<Effect> effects = proportional_to_mass(small, 0.8);
   const Diagnosis d = diagnosed(small, effects);
@@ -102,13 +102,13 @@ TEST(DampingForm, DampingThatGoesWithTheMassesIsAdequate) {
   EXPECT_FALSE(modal_damping_effects(d.model).empty());
 }
 
-TEST(DampingForm, DashpotsBetweenFloorsHaveNone) {
+TEST(DampingForm, DashpotsBetweenFloorsNeedNoModalRatios) {
   const Diagnosis d = diagnosed(test::tower(2), {});
   EXPECT_EQ(d.verdict, Verdict::adequate);
   EXPECT_TRUE(modal_damping_effects(d.model).empty());
 }
 
-TEST(DampingForm, OneDashpotToTheGroundIsAFinding) {
+TEST(DampingForm, ReportsASingleDashpotToTheGround) {
   EffectPlace place;
   place.kind = PlaceKind::node_pair;
   place.story = 2;
@@ -122,7 +122,7 @@ TEST(DampingForm, OneDashpotToTheGroundIsAFinding) {
   EXPECT_TRUE(modal_damping_effects(d.model).empty());
 }
 
-TEST(DampingForm, RatiosThatAreFreeAreNotFreedAgain) {
+TEST(DampingForm, DoesNotFreeRatiosTwice) {
   const test::Small small = two_stories();
   const Plant plant = small.plant();
   const Effect law = test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {1e8});
@@ -137,7 +137,7 @@ TEST(DampingForm, RatiosThatAreFreeAreNotFreedAgain) {
   EXPECT_TRUE(with_free_damping(fitter, with).good);
 }
 
-TEST(DampingForm, LeavesALawBesideItItsName) {
+TEST(DampingForm, KeepsTheNameOfALawBesideIt) {
   const test::Small small = two_stories();
   std::vector<Effect> effects = ratios();
   effects.push_back(test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {1e8}));

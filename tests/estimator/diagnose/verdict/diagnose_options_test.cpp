@@ -30,7 +30,7 @@ Diagnosis diagnosed(const std::vector<Eigen::MatrixXd>& records,
   return diagnose(plant, small.segments(records), options);
 }
 
-TEST(DiagnoseOptions, ANameThatIsTakenOutIsNeverGiven) {
+TEST(DiagnoseOptions, NeverGivesAnExcludedName) {
   DiagnosisOptions options;
   options.without = {EffectKind::gain_error};
   const Diagnosis d = diagnosed(records_with_gain(), options);
@@ -39,7 +39,7 @@ TEST(DiagnoseOptions, ANameThatIsTakenOutIsNeverGiven) {
   for (const Trial& t : d.rejected) EXPECT_NE(t.kind, EffectKind::gain_error);
 }
 
-TEST(DiagnoseOptions, AKnownEffectIsFittedAgainAndNotFound) {
+TEST(DiagnoseOptions, FitsAKnownEffectWithoutReportingIt) {
   DiagnosisOptions options;
   options.known = {
       test::effect_of(EffectKind::gain_error, test::at_channel(kChannel), {0.5 * kGain})};
@@ -52,7 +52,7 @@ TEST(DiagnoseOptions, AKnownEffectIsFittedAgainAndNotFound) {
   EXPECT_NEAR(d.declared.gain[kChannel], kGain, kGainOff);
 }
 
-TEST(DiagnoseOptions, WithoutRoundsNothingIsLookedFor) {
+TEST(DiagnoseOptions, SearchesNothingWithoutRounds) {
   DiagnosisOptions options;
   options.rounds = 0;
   const Diagnosis d = diagnosed(records_with_gain(), options);
@@ -63,7 +63,7 @@ TEST(DiagnoseOptions, WithoutRoundsNothingIsLookedFor) {
   EXPECT_DOUBLE_EQ(d.ratio_before, d.ratio_after);
 }
 
-TEST(DiagnoseOptions, GapsAreOfEverySegmentWhateverIsHeldOut) {
+TEST(DiagnoseOptions, GivesTheGapOfEverySegment) {
   for (const std::size_t holdout_from : {1U, 2U}) {
     DiagnosisOptions options;
     options.holdout_from = holdout_from;
@@ -77,7 +77,7 @@ TEST(DiagnoseOptions, GapsAreOfEverySegmentWhateverIsHeldOut) {
   }
 }
 
-TEST(DiagnoseOptions, ItTellsHowFarItIsInOrder) {
+TEST(DiagnoseOptions, ReportsProgressInOrder) {
   DiagnosisOptions options;
   double last = 0;
   int told = 0;
@@ -93,7 +93,7 @@ TEST(DiagnoseOptions, ItTellsHowFarItIsInOrder) {
   EXPECT_GE(told, 4);
 }
 
-TEST(DiagnoseOptions, TheResultDoesNotDependOnTheOrderOfTheWork) {
+TEST(DiagnoseOptions, ResultDoesNotDependOnTheOrderOfTheWork) {
   DiagnosisOptions backwards;
   backwards.parallel = [](int count, const std::function<void(int)>& work) {
     for (int i = count; i-- > 0;) work(i);
@@ -106,7 +106,7 @@ TEST(DiagnoseOptions, TheResultDoesNotDependOnTheOrderOfTheWork) {
   for (std::size_t i = 0; i < a.map.size(); ++i) EXPECT_EQ(a.map[i].place, b.map[i].place);
 }
 
-TEST(Diagnose, NoSegmentsAreNoDiagnosis) {
+TEST(Diagnose, IsUnexplainedWithoutSegments) {
   const Diagnosis d = diagnosed({});
   EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_NE(d.reason.find("cannot be fitted"), std::string::npos);
@@ -114,7 +114,7 @@ TEST(Diagnose, NoSegmentsAreNoDiagnosis) {
   EXPECT_EQ(fitted_linear(test::Small().plant(), {}, {}).size(), 0);
 }
 
-TEST(Diagnose, AReadingThatIsNoNumberIsNeverExplained) {
+TEST(Diagnose, NeverExplainsANanReading) {
   std::vector<Eigen::MatrixXd> records = test::records_with({}, {1});
   records[0](300, kChannel) = std::numeric_limits<double>::quiet_NaN();
   const Diagnosis d = diagnosed(records);
@@ -122,7 +122,7 @@ TEST(Diagnose, AReadingThatIsNoNumberIsNeverExplained) {
   EXPECT_TRUE(d.effects.empty());
 }
 
-TEST(Diagnose, TheLinearFitIsThatOfTheBuilding) {
+TEST(Diagnose, LinearFitMatchesTheBuilding) {
   constexpr double kOff = 0.02;
   const test::Recorded recorded(test::records_with({}));
   const Eigen::VectorXd theta = fitted_linear(recorded.plant, recorded.segments, {});

@@ -23,7 +23,7 @@ Localisation at(const EffectPlace& place, double ratio) {
   return out;
 }
 
-TEST(Map, EveryPlaceOnceBestFirst) {
+TEST(Map, ListsEveryPlaceOnceBestFirst) {
   Located located;
   located.places = {at(test::in_frame(1), 1.1), at(test::in_frame(0), 3)};
   // After one step: the same places with larger ratios, and others.
@@ -43,7 +43,7 @@ TEST(Map, EveryPlaceOnceBestFirst) {
   EXPECT_TRUE(map_of({}).empty());
 }
 
-TEST(Where, SaysWhenAtWhichFrequencyAndHowMuch) {
+TEST(Where, GivesTimeFrequencyAndSize) {
   constexpr double kSize_mps2 = 1, kHz = 3.3, kFrom_s = 7, kTo_s = 15;
   constexpr double kHzOff = 0.3, kTimeOff_s = 1.5, kSizeOff = 0.2;
   constexpr int kChannel = 1;
@@ -71,7 +71,7 @@ TEST(Where, SaysWhenAtWhichFrequencyAndHowMuch) {
   EXPECT_NEAR(entry.peak / kSize_mps2, 1, kSizeOff);
 }
 
-TEST(Where, OnlyTheLikeliestPlacesAreDescribed) {
+TEST(Where, DescribesOnlyTheLikeliestPlaces) {
   constexpr std::size_t kDescribed = 3;
   const Recorded recorded(test::records_with({test::effect_of(
       EffectKind::unmeasured_force, test::at_node(2), {4000, 3.3, 0, 0, 0.1, 10, 1, 0})}));
@@ -103,7 +103,7 @@ WhereEntry of_upper_floor(EffectKind kind, PlaceKind at, std::initializer_list<d
   return {};
 }
 
-TEST(Where, AFloorNeedsASortOfForceWhereItFollowsItsMotion) {
+TEST(Where, GivesAFloorsKindOfForceIfItFollowsTheMotion) {
   const WhereEntry stop =
       of_upper_floor(EffectKind::one_sided_gap, PlaceKind::node_pair, {2e7, 0.01, 1, 0});
   ASSERT_TRUE(stop.kind);
@@ -111,7 +111,7 @@ TEST(Where, AFloorNeedsASortOfForceWhereItFollowsItsMotion) {
   const WhereEntry oscillator =
       of_upper_floor(EffectKind::tuned_mass_damper, PlaceKind::node, {2000, 2.1, 0.05});
   ASSERT_GT(oscillator.peak, 0);
-  EXPECT_FALSE(oscillator.kind) << "has a motion of its own";
+  EXPECT_FALSE(oscillator.kind) << "it does not follow the floor's motion";
 }
 
 }  // namespace diagnosis_test

@@ -31,7 +31,7 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& ex
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-12) << i;
 }
 
-TEST(SearchProgress, TheWorkOfAStageCounts) {
+TEST(SearchProgress, CountsTheWorkOfAStage) {
   Told told;
   SearchProgress progress(told.listener(), {});
   const Parallel counted = progress.counted();
@@ -45,7 +45,7 @@ TEST(SearchProgress, TheWorkOfAStageCounts) {
   EXPECT_EQ(told.what, (std::vector<std::string>{"a", "a", "a", "b", "b", "b", "b", "b"}));
 }
 
-TEST(SearchProgress, NeverGoesBackNorBeyondItsStage) {
+TEST(SearchProgress, NeverDecreasesNorExceedsItsStage) {
   Told told;
   SearchProgress progress(told.listener(), {});
   const Parallel counted = progress.counted();
@@ -57,7 +57,7 @@ TEST(SearchProgress, NeverGoesBackNorBeyondItsStage) {
   EXPECT_NEAR(told.done.back(), 0.5, 1e-12);
 }
 
-TEST(SearchProgress, UsesTheParallelThatItHas) {
+TEST(SearchProgress, UsesTheGivenWorkers) {
   int calls = 0;
   SearchProgress progress({}, [&](int count, const std::function<void(int)>& work) {
     ++calls;
@@ -80,7 +80,7 @@ bool names(const Diagnosis& d, const Effect& effect) {
   });
 }
 
-TEST(TwoEffects, OneOfWhichChangesWithTimeMayBeAtOnePlace) {
+TEST(TwoEffects, MayShareAPlaceIfOneChangesWithTime) {
   const Effect friction =
       test::effect_of(EffectKind::coulomb_friction, test::in_frame(1), {9e3, 0.004});
   const Effect drop = test::effect_of(EffectKind::stiffness_drop, test::in_frame(1), {-1.6e6, 6});

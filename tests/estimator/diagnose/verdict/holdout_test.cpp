@@ -18,7 +18,7 @@ Gap gap_with(double overall) {
   return out;
 }
 
-TEST(MeanGap, IsOfTheHeldOutSegments) {
+TEST(MeanGap, AveragesHeldOutSegments) {
   const std::vector<Gap> gaps{gap_with(9), gap_with(1), gap_with(4)};
   EXPECT_DOUBLE_EQ(mean_gap(gaps, 1), 2.5);
   EXPECT_DOUBLE_EQ(mean_gap(gaps, 2), 4);
@@ -27,7 +27,7 @@ TEST(MeanGap, IsOfTheHeldOutSegments) {
   EXPECT_DOUBLE_EQ(mean_gap({}, 0), 0);
 }
 
-TEST(Gaps, TheTrueModelIsAtTheFloorAndAWrongOneFarAbove) {
+TEST(Gaps, TheTrueModelIsAtTheNoiseFloorAndAWrongOneFarAbove) {
   const Recorded recorded(test::records_with({}, {1, 2}));
   Model truth = initial_model(recorded.plant);
   truth.theta = recorded.small.truth;
@@ -63,7 +63,7 @@ struct Softened {
   }
 };
 
-TEST(Holdout, TheModelHasNotSeenWhatIsHeldOut) {
+TEST(Holdout, HeldOutRecordsDoNotInfluenceTheModel) {
   const Softened one(1), both(2);
   // Fitted to the first record alone, it is at its floor there and far off in the second.
   EXPECT_LT(one.diagnosis.before[0].overall, kAtFloor * one.diagnosis.before[0].overall_floor);
@@ -71,7 +71,7 @@ TEST(Holdout, TheModelHasNotSeenWhatIsHeldOut) {
   EXPECT_GT(one.diagnosis.before[1].overall, 1.2 * both.diagnosis.before[1].overall);
 }
 
-TEST(Holdout, WithoutEffectsTheGapStaysWhatItWas) {
+TEST(Holdout, TheGapStaysWithoutEffects) {
   const Softened d(1);
   ASSERT_EQ(d.diagnosis.after.size(), d.diagnosis.before.size());
   for (std::size_t r = 0; r < d.diagnosis.after.size(); ++r)
@@ -79,7 +79,7 @@ TEST(Holdout, WithoutEffectsTheGapStaysWhatItWas) {
   EXPECT_FALSE(d.diagnosis.after_of_all);
 }
 
-TEST(Holdout, WhatTheTrainingRecordsDoNotDetermineIsOfAll) {
+TEST(Holdout, FitsParametersUnseenInTrainingToAllRecords) {
   // A reading that is wrong in both records, or only in the second: then the first contains no sign
   // of it.
   constexpr double kGain = 0.3;

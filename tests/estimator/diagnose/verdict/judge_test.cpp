@@ -31,7 +31,7 @@ Verdict judged(Diagnosis d) {
   return d.verdict;
 }
 
-TEST(Judge, WithoutEffectsALinearBuildingIsAdequateOrNot) {
+TEST(Judge, JudgesALinearBuildingWithoutEffects) {
   struct Linear {
     const char* what;
     double ratio, gap;
@@ -85,7 +85,7 @@ TEST(Judge, EffectsExplainAllOrPart) {
   }
 }
 
-TEST(Judge, NoFloorIsNoDivisionByZero) {
+TEST(Judge, DoesNotDivideByAZeroFloor) {
   Diagnosis d;
   d.ratio_before = d.ratio_after = 3;
   d.before = d.after = {gap_with(0, 0)};
@@ -94,7 +94,7 @@ TEST(Judge, NoFloorIsNoDivisionByZero) {
   EXPECT_EQ(judged(d), Verdict::unexplained);
 }
 
-TEST(Judge, RecordsThatFitApartAreOfDifferentBuildings) {
+TEST(Judge, CallsRecordsThatFitOnlySeparatelyDifferentBuildings) {
   test::Small other;
   other.truth.head(4) *= 1.3;
   const Recorded recorded({test::Small().record({}, 1), other.record({}, 2)});
@@ -113,7 +113,7 @@ TEST(Judge, RecordsThatFitApartAreOfDifferentBuildings) {
   EXPECT_EQ(d.reason, "known");
 }
 
-TEST(Judge, WhatALinearEffectLeavesIsAnothers) {
+TEST(Judge, AnApproximateLinearEffectExplainsOnlyPart) {
   Diagnosis d;
   d.ratio_before = 101;
   d.ratio_after = 1.2;
@@ -148,7 +148,7 @@ TEST(Judge, AnArbitraryForceExplainsNothing) {
   EXPECT_EQ(judged(d), Verdict::partly_explained);
 }
 
-TEST(Withdraw, NamesWhoseModelIsWorseThanNone) {
+TEST(Withdraw, RemovesNamesWhoseModelIsWorse) {
   struct Found {
     const char* what;
     double before, after, held_before, held_after;
@@ -179,7 +179,7 @@ TEST(Withdraw, NamesWhoseModelIsWorseThanNone) {
 }
 
 /// The gap of a diverging run is missing; the mean of the others must not count as a good gap.
-TEST(Withdraw, WhatMakesTheRunOfAnyRecordDiverge) {
+TEST(Withdraw, RemovesEffectsThatMakeAnyRunDiverge) {
   Diagnosis d;
   d.before.resize(2);
   d.after.resize(1);
@@ -191,7 +191,7 @@ TEST(Withdraw, WhatMakesTheRunOfAnyRecordDiverge) {
   EXPECT_EQ(d.after.size(), 2U);
 }
 
-TEST(Withdraw, ALawThatLeavesMuchAndIsNotSeenToBeOfItsKind) {
+TEST(Withdraw, RemovesALawThatLeavesMuchAndShowsAnotherKind) {
   constexpr double kFloor = 0.01;
   enum class Seen { nothing, its_kind, another };
   struct Found {
@@ -230,7 +230,7 @@ TEST(Withdraw, ALawThatLeavesMuchAndIsNotSeenToBeOfItsKind) {
   }
 }
 
-TEST(Grade, OnlyASureNameWithNothingBesideItIsEstablished) {
+TEST(Grade, OnlyASureNameWithoutRivalsIsEstablished) {
   FoundEffect e;
   e.confidence = 0.99;
   EXPECT_EQ(grade_of(e), Grade::established);

@@ -41,7 +41,7 @@ struct Left {
   }
 };
 
-TEST(NearestLawOfAPlace, IsOfTheKindThatTheForceThereIs) {
+TEST(NearestLawOfAPlace, HasTheKindOfTheForceThere) {
   const Left left(LawKind::dissipative);
   std::vector<Trial> one{left.law(EffectKind::bouc_wen, 0.9)};
   EXPECT_FALSE(left.first(one)) << "remembers";
@@ -74,7 +74,7 @@ TEST(NearestLawOfAPlace, ActsWhereTheKindIsKnown) {
   EXPECT_FALSE(left.first(there));
 }
 
-TEST(NearestLawOfAPlace, ThatHoldsMayBeAnyFunctionOfTheDeformation) {
+TEST(NearestLawOfAPlace, MayBeAnyFunctionOfTheDeformationIfItHolds) {
   const Left elastic(LawKind::elastic), impact(LawKind::impact), other(LawKind::hysteretic);
   std::vector<Trial> gap{elastic.law(EffectKind::two_sided_gap, 0.9)};
   const Trial spring = impact.law(EffectKind::cubic_stiffness, 0.98);
@@ -85,7 +85,7 @@ TEST(NearestLawOfAPlace, ThatHoldsMayBeAnyFunctionOfTheDeformation) {
 }
 
 /// Friction that sticks is not a function of the measured motion.
-TEST(NearestLawOfAPlace, OrLeavesFarLessThanAnyFunctionOfTheMotion) {
+TEST(NearestLawOfAPlace, MayBeOfAnotherKindIfItLeavesFarLess) {
   Left left(LawKind::external);
   left.where.front().kind->share[static_cast<std::size_t>(LawKind::hysteretic)] = 0.2;
   std::vector<Trial> most{left.law(EffectKind::coulomb_friction, 0.95)};
@@ -99,7 +99,7 @@ TEST(NearestLawOfAPlace, OrLeavesFarLessThanAnyFunctionOfTheMotion) {
   EXPECT_FALSE(is_of_the_kind_there(most[0], {}));
 }
 
-TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
+TEST(NearestLawOfAPlace, IsRefutedByAForceOfAnotherKind) {
   struct Said {
     LawKind kind;
     EffectKind law;
@@ -132,7 +132,7 @@ TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
   }
 }
 
-TEST(NearestLawOfAPlace, LeavesFarLessThanItsKindWhereThatDoesNotCount) {
+TEST(NearestLawOfAPlace, MustLeaveFarLessIfTheKindIsUncertain) {
   Left left(LawKind::elastic);
   left.where.front().kind->share[static_cast<std::size_t>(LawKind::elastic)] = 0.8;
   const Trial loop = left.law(EffectKind::pinching, 1);
@@ -140,7 +140,7 @@ TEST(NearestLawOfAPlace, LeavesFarLessThanItsKindWhereThatDoesNotCount) {
   EXPECT_FALSE(contradicts_the_kind(loop, left.where, 0.01));
 }
 
-TEST(NearestLawOfAPlace, AForceFromNowhereIsContradictedByOneThatFollowsTheMotion) {
+TEST(NearestLawOfAPlace, AnExternalForceIsRefutedByOneThatFollowsTheMotion) {
   for (const auto& [kind, contradicted] : {std::pair(LawKind::time_varying, true),
                                            {LawKind::external, false},
                                            {LawKind::linear, false}}) {

@@ -43,7 +43,7 @@ double off_of(const RecordSegment& a, const RecordSegment& b) {
   return (a.accel.col(kChannel) - b.accel.col(kChannel)).norm() / b.accel.col(kChannel).norm();
 }
 
-TEST(Ramps, AreFoundInTheRecordThatHasThemAndTakenOff) {
+TEST(Ramps, AreFoundAndRemovedInTheirRecord) {
   const Recorded clean(long_records()), recorded(records_with_ramp());
   std::vector<RecordSegment> segments = recorded.segments;
   const std::vector<FoundEffect> found = remove_ramps(recorded.plant, {}, segments);
@@ -59,7 +59,7 @@ TEST(Ramps, AreFoundInTheRecordThatHasThemAndTakenOff) {
             0.2 * off_of(recorded.segments[1], clean.segments[1]));
 }
 
-TEST(Ramps, NoneIsFoundWhereThereIsNoneOrItsNameIsTakenOut) {
+TEST(Ramps, AreNotFoundIfAbsentOrExcluded) {
   const Recorded clean(long_records()), recorded(records_with_ramp());
   std::vector<RecordSegment> segments = clean.segments;
   EXPECT_TRUE(remove_ramps(clean.plant, {}, segments).empty());
@@ -70,7 +70,7 @@ TEST(Ramps, NoneIsFoundWhereThereIsNoneOrItsNameIsTakenOut) {
   EXPECT_EQ(segments[1].accel, recorded.segments[1].accel);
 }
 
-TEST(Ramps, AKnownOneIsTakenOffEveryRecordAndNotFoundAgain) {
+TEST(Ramps, AKnownOneIsRemovedFromEveryRecord) {
   const Recorded clean({long_records()[1]}), recorded({records_with_ramp()[1]});
   DiagnosisOptions options;
   options.known = {
@@ -80,7 +80,7 @@ TEST(Ramps, AKnownOneIsTakenOffEveryRecordAndNotFoundAgain) {
   EXPECT_LT(off_of(segments[0], clean.segments[0]), 1e-9);
 }
 
-TEST(Ramps, ARampCountsInTheGapBeforeByItsPower) {
+TEST(Ramps, IncreaseTheInitialGapByTheirPower) {
   const Recorded recorded(test::records_with({}, {1, 2}));
   constexpr double kBefore = 0.01, kAfter = 0.008;
   const Eigen::Index axes = recorded.plant.axis_count();

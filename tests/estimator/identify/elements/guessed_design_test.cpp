@@ -46,14 +46,14 @@ TEST(Design, GuessHasATenthOfASecondPerStory) {
   }
 }
 
-TEST(Design, ExactRatiosAreTakenOver) {
+TEST(Design, AdoptsExactRatios) {
   Bench b;
   b.ratio[b.unknown("ky_3_x2")] = 0.4;
   EXPECT_NEAR(b.factor("ky_3_x2"), 0.4, 1e-12);
   EXPECT_NEAR(b.factor("ky_3_x1"), 1, 1e-12);
 }
 
-TEST(Design, DoubtfulRatiosMoveLess) {
+TEST(Design, MovesLessByUncertainRatios) {
   Bench b;
   const std::size_t u = b.unknown("kx_2_y1");
   b.ratio[u] = 2;
@@ -63,7 +63,7 @@ TEST(Design, DoubtfulRatiosMoveLess) {
   EXPECT_NEAR(b.factor("kx_2_y1"), 1, 1e-3);
 }
 
-TEST(Design, NothingMovesMoreThanFiveTimesAtOnce) {
+TEST(Design, MovesAtMostFiveTimesAtOnce) {
   Bench b;
   b.ratio[b.unknown("cx_1_y1")] = 40;
   b.ratio[b.unknown("Gk_2_x1y1")] = 0.01;
@@ -71,7 +71,7 @@ TEST(Design, NothingMovesMoreThanFiveTimesAtOnce) {
   EXPECT_NEAR(b.factor("Gk_2_x1y1"), 0.2, 1e-12);
 }
 
-TEST(Design, WhatIsNotShownFollowsItsKind) {
+TEST(Design, MovesUnobservableElementsWithTheirKind) {
   Bench b;
   for (int u = 0; u < 50; ++u) {
     const auto kind = b.table[b.layout.parameter(u / b.layout.own(), u % b.layout.own())].kind;
@@ -83,7 +83,7 @@ TEST(Design, WhatIsNotShownFollowsItsKind) {
   EXPECT_NEAR(b.factor("kx_4_y1"), 3, 1e-12);
 }
 
-TEST(Design, NothingShownChangesNothing) {
+TEST(Design, StaysIfNothingIsObservable) {
   Bench b;
   b.ratio.assign(50, 3.0);
   b.shown.assign(50, 0);

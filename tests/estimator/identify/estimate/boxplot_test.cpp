@@ -85,7 +85,7 @@ TEST(Boxplot, FiveHundredValuesHaveMatlabsPositions) {
   EXPECT_EQ(s.outliers, 0);
 }
 
-TEST(Boxplot, ValueOnTheFenceIsNoOutlier) {
+TEST(Boxplot, AValueOnTheFenceIsNotAnOutlier) {
   BoxplotWindow box(8);
   for (const double v : {0., 0., 1., 1., 1., 2., 2., 3.5}) box.push(v);
   const BoxplotStatistics s = box.statistics();  // q1 0.5, q3 2: the upper fence is 4.25

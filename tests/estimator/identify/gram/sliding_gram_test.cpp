@@ -154,7 +154,7 @@ TEST(SlidingGram, FloorsWithoutRowsComeAndGo) {
   EXPECT_LT(worst, kLimit);
 }
 
-TEST(SlidingGram, SpansAreTheSameWindowsAtTheirBlocks) {
+TEST(SlidingGram, SpansEqualMainWindowsAtBlockEnds) {
   // GIVEN sums of 20 blocks with spans of 4 and 20 blocks
   Bench b;
   SlidingGram spanned(b.layout, kBlocks, kBlockRows, {4, kBlocks});
@@ -180,7 +180,7 @@ TEST(SlidingGram, SpansAreTheSameWindowsAtTheirBlocks) {
   }
 }
 
-TEST(SlidingGram, AreNewAfterAReset) {
+TEST(SlidingGram, StartsEmptyAfterAReset) {
   Bench used, fresh;
   for (int t = 0; t < 3 * kWindow + 17; ++t) used.advance(1e6), used.finish();
   used.reset();

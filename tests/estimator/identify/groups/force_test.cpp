@@ -135,7 +135,7 @@ Largest errors_of(const ForcedRecord& record, double from_s = 15) {
   return out;
 }
 
-TEST(Force, OnAnInnerFloorOfFewSensorsIsExact) {
+TEST(Force, IsExactOnAnUnmeasuredFloor) {
   const ForcedRecord record = forced_record(10, {3, 6, 10}, 5, shaker(), 0);
   ASSERT_EQ(record.config.parameters()[1].name, "kx_4to6");
   ASSERT_TRUE(problems(record.config).empty()) << problems(record.config).front();
@@ -145,7 +145,7 @@ TEST(Force, OnAnInnerFloorOfFewSensorsIsExact) {
   EXPECT_LT(errors.damping, kExactDamping);
 }
 
-TEST(Force, OnAMeasuredFloorOfAWhollyMeasuredBuildingIsExact) {
+TEST(Force, IsExactIfEveryFloorIsMeasured) {
   const ForcedRecord record = forced_record(5, {1, 2, 3, 4, 5}, 5, shaker(), 0);
   ASSERT_EQ(record.config.parameters()[2].name, "kx_3_y1");
   const Largest errors = errors_of(record);
@@ -153,14 +153,14 @@ TEST(Force, OnAMeasuredFloorOfAWhollyMeasuredBuildingIsExact) {
   EXPECT_LT(errors.damping, kExactDamping);
 }
 
-TEST(Force, WithNoiseOnEveryChannelStaysWithinPercents) {
+TEST(Force, StaysWithinPercentsUnderNoise) {
   const Largest errors = errors_of(forced_record(10, {3, 6, 10}, 8, shaker(), kNoise));
   EXPECT_LT(errors.stiffness, kNoisyStiffness);
   EXPECT_LT(errors.damping, kNoisyDamping);
   EXPECT_GT(errors.published, 0);
 }
 
-TEST(Force, OfAHammerThatStrikesOnceInAWhileServes) {
+TEST(Force, OfARareHammerBlowSuffices) {
   const ForcedRecord record = forced_record(5, {1, 2, 3, 4, 5}, 3, hammer(4), 0);
   const Largest errors = errors_of(record);
   EXPECT_LT(errors.stiffness, 10 * kExactStiffness);
@@ -169,7 +169,7 @@ TEST(Force, OfAHammerThatStrikesOnceInAWhileServes) {
   EXPECT_GT(noisy.published, 0);
 }
 
-TEST(Force, WhileTheGroundShakesTooIsToldFromIt) {
+TEST(Force, IsDistinguishedFromGroundMotion) {
   KanaiTajimi ground;
   ground.duration_s = kDuration_s + 1;
   ground.strong_s = kDuration_s;
@@ -181,13 +181,13 @@ TEST(Force, WhileTheGroundShakesTooIsToldFromIt) {
   EXPECT_LT(errors.damping, kExactDamping);
 }
 
-TEST(Force, ThatIsLeftOutIsMissed) {
+TEST(Force, CausesErrorsIfLeftOut) {
   ForcedRecord record = forced_record(5, {1, 2, 3, 4, 5}, 3, shaker(), 0);
   record.samples.col(5).setZero();
   EXPECT_GT(errors_of(record).stiffness, 0.05) << "the shaker's cable was not plugged in";
 }
 
-TEST(Force, WhoseChannelDiesEndsTheEstimatesUntilItIsBack) {
+TEST(Force, EndsEstimatesWhileItsChannelIsDead) {
   ForcedRecord record = forced_record(5, {1, 2, 3, 4, 5}, 3, shaker(), 0);
   const int from = 1800, to = 2600;
   record.samples.col(5)
@@ -222,7 +222,7 @@ TEST(Force, WhoseChannelDiesEndsTheEstimatesUntilItIsBack) {
 }
 
 /// Two frames each way, rigid floors, three channels per floor and an eccentric shaker.
-TEST(Force, OutOfTheMiddleOfARigidFloorTurnsIt) {
+TEST(Force, TurnsARigidFloorIfEccentric) {
   PipelineConfig c;
   Structure& s = c.structure;
   s.stories = 3;
@@ -278,7 +278,7 @@ TEST(Force, OutOfTheMiddleOfARigidFloorTurnsIt) {
   EXPECT_GT(worst, 0);
 }
 
-TEST(Force, OnTheBaseOrAloneIsRefused) {
+TEST(Force, IsRefusedOnTheBaseOrAlone) {
   ForcedRecord record = forced_record(5, {1, 3, 5}, 3, shaker(), 0);
   PipelineConfig base = record.config;
   base.axes.back().story = 0;

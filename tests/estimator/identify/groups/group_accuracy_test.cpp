@@ -28,7 +28,7 @@ FewSensorsErrors errors_of(TallTrial trial, int seeds) {
   return out;
 }
 
-TEST(GroupAccuracy, OfExactMotionIsThatOfTheFilters) {
+TEST(GroupAccuracy, IsLimitedByTheFiltersForExactMotion) {
   TallTrial trial;
   trial.noise_ratio = 0;
   TallRecord record = tall_record(trial);
@@ -39,7 +39,7 @@ TEST(GroupAccuracy, OfExactMotionIsThatOfTheFilters) {
   EXPECT_LT(errors.damping.quantile(0.9), 2e-4);
 }
 
-TEST(GroupAccuracy, OfFourFloorsOfTwentyIsAsDerived) {
+TEST(GroupAccuracy, MatchesTheoryForFourFloorsOfTwenty) {
   const FewSensorsErrors errors = errors_of({}, 3);
   EXPECT_LT(errors.stiffness.quantile(0.5), 0.0012);
   EXPECT_LT(errors.stiffness.quantile(0.95), 0.005);
@@ -48,7 +48,7 @@ TEST(GroupAccuracy, OfFourFloorsOfTwentyIsAsDerived) {
   EXPECT_GT(errors.stiffness.coverage_ratio(), 0.85);
 }
 
-TEST(GroupAccuracy, OfFramesOfRigidFloorsWithThreeChannelsIsAsDerived) {
+TEST(GroupAccuracy, MatchesTheoryForRigidFloorsWithThreeChannels) {
   TallTrial trial;
   trial.in_space = true;
   trial.duration_s = 45;
@@ -58,7 +58,7 @@ TEST(GroupAccuracy, OfFramesOfRigidFloorsWithThreeChannelsIsAsDerived) {
   EXPECT_GT(errors.stiffness.coverage_ratio(), 0.85);
 }
 
-TEST(GroupAccuracy, WithFiveTimesTheNoiseIsFiveTimesWorse) {
+TEST(GroupAccuracy, FallsFivefoldWithFiveTimesTheNoise) {
   TallTrial trial;
   trial.noise_ratio = 0.05;
   const FewSensorsErrors errors = errors_of(trial, 3);
@@ -66,7 +66,7 @@ TEST(GroupAccuracy, WithFiveTimesTheNoiseIsFiveTimesWorse) {
   EXPECT_LT(errors.damping.quantile(0.5), 0.05);
 }
 
-TEST(GroupAccuracy, OfABuildingThatIsTwiceAsStiffIsFoundByRetuning) {
+TEST(GroupAccuracy, IsReachedByRetuningForADoublyStiffBuilding) {
   TallTrial trial;
   trial.noise_ratio = 0.02;
   TallRecord record = tall_record(trial);
@@ -75,7 +75,7 @@ TEST(GroupAccuracy, OfABuildingThatIsTwiceAsStiffIsFoundByRetuning) {
   EXPECT_LT(errors.stiffness.quantile(0.95), 0.01);
 }
 
-TEST(GroupAccuracy, OfABuildingThatBendsNeedsTheBending) {
+TEST(GroupAccuracy, NeedsTheBendingOfABendingBuilding) {
   TallTrial trial;
   trial.bending_nmprad = 3e12;
   trial.believed_bending_nmprad = 6e12;
@@ -115,7 +115,7 @@ TEST(GroupAccuracy, IsPredictedFromTheDesign) {
   EXPECT_NEAR(std::exp(damping), 1, 0.3);
 }
 
-/// The same motion on every floor, read by axes that are on their frames, or at a place in plan.
+/// The same motion on every floor, read by axes on frames or at places in plan.
 PipelineConfig everywhere(const TallRecord& record, bool at_places) {
   PipelineConfig config = record.config;
   config.options.self_tune = false;
@@ -129,7 +129,7 @@ PipelineConfig everywhere(const TallRecord& record, bool at_places) {
   return config;
 }
 
-TEST(GroupAccuracy, WithEveryFloorMeasuredTheNumbersAreThoseOfStories) {
+TEST(GroupAccuracy, MatchesStoriesIfEveryFloorIsMeasured) {
   TallTrial trial;
   trial.stories = 5;
   trial.floors = {1, 2, 3, 4, 5};

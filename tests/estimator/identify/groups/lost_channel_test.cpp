@@ -27,7 +27,7 @@ WindowEstimate last_estimate(const PipelineConfig& config, const Eigen::MatrixXd
 
 /// The groups on both sides of the lost channel merge. They keep the ratio that was identified
 /// while the channel was there, whatever the design's ratio was.
-TEST(LostChannel, MakesItsFloorAnInnerOne) {
+TEST(LostChannel, MakesItsFloorUnmeasured) {
   daemon::TallTrial trial;
   trial.duration_s = 60;
   daemon::TallRecord lost = daemon::tall_record(trial);
@@ -39,7 +39,7 @@ TEST(LostChannel, MakesItsFloorAnInnerOne) {
   }
 }
 
-TEST(LostChannel, ThatComesBackIsUsedAgain) {
+TEST(LostChannel, IsUsedAgainAfterItsReturn) {
   daemon::TallTrial trial;
   trial.duration_s = 90;
   daemon::TallRecord record = daemon::tall_record(trial);
@@ -51,7 +51,7 @@ TEST(LostChannel, ThatComesBackIsUsedAgain) {
   }
 }
 
-TEST(LostChannel, ForAMomentStartsTheFiltersAnewAndNoMore) {
+TEST(LostChannel, OnlyRestartsTheFiltersIfBrief) {
   daemon::TallTrial trial;
   daemon::TallRecord record = daemon::tall_record(trial);
   record.accel.col(3).segment(2500, 20).setConstant(kNoSample);
@@ -60,7 +60,7 @@ TEST(LostChannel, ForAMomentStartsTheFiltersAnewAndNoMore) {
   EXPECT_NEAR(last.solution[2] / record.truth[2], 1, 0.01);
 }
 
-TEST(LostChannel, OfTheBaseEndsEverything) {
+TEST(LostChannel, EndsAllEstimatesIfAtTheBase) {
   daemon::TallTrial trial;
   daemon::TallRecord record = daemon::tall_record(trial);
   record.accel.col(0).tail(3000).setConstant(kNoSample);

@@ -121,14 +121,14 @@ RockingRecord unaware(RockingRecord record) {
   return record;
 }
 
-TEST(Rocking, ThatIsMeasuredIsAnInput) {
+TEST(Rocking, IsAnInputIfMeasured) {
   const RockingRecord record = rocking_record(0);
   ASSERT_TRUE(problems(record.config).empty()) << problems(record.config).front();
   EXPECT_LT(largest_error(record), kExactStiffness);
   EXPECT_GT(largest_error(unaware(record)), kUnknownStiffness);
 }
 
-TEST(Rocking, OfAVerticalThatDiesIsTakenForNone) {
+TEST(Rocking, IsTakenAsZeroIfAVerticalChannelDies) {
   RockingRecord record = rocking_record(0);
   record.samples.col(4).setConstant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_NEAR(largest_error(record), largest_error(unaware(record)), kAlike);

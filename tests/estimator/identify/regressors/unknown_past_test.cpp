@@ -100,7 +100,7 @@ std::vector<double> removed(UnknownPast past, std::vector<double> rows, int* unc
 
 /// A filter that starts in motion and one that has always run give the same recursive residuals:
 /// nothing of the past remains.
-TEST(UnknownPast, LeavesNothingOfThePast) {
+TEST(UnknownPast, RemovesThePast) {
   for (const double hz : {0.31, 1.0, 4.0, 15.0}) {
     const std::vector<double> always = removed(past_of(hz), rows(0, hz));
     const std::vector<double> started = removed(past_of(hz), rows(kStart, hz));
@@ -117,7 +117,7 @@ TEST(UnknownPast, LeavesNothingOfThePast) {
 }
 
 /// The sum of h h^T of the residuals equals the sum with the shapes projected out of all rows.
-TEST(UnknownPast, SumsAreThoseOfAProjection) {
+TEST(UnknownPast, SumsEqualThoseOfAProjection) {
   constexpr int kSome = 200;
   const double hz = 2;
   const std::vector<double> all = rows(kStart, hz);
@@ -165,7 +165,7 @@ TEST(UnknownPast, SumsAreThoseOfAProjection) {
 }
 
 /// Each shape costs one row. After all have decayed, rows pass unchanged.
-TEST(UnknownPast, CostsARowForEachShapeAndEnds) {
+TEST(UnknownPast, CostsOneRowPerShapeUntilTheyDecay) {
   const double hz = 2;
   int uncounted = 0;
   const std::vector<double> all = rows(kStart, hz);
@@ -183,7 +183,7 @@ TEST(UnknownPast, WithoutEquationsNothingIsRemoved) {
 }
 
 /// Two equal pairs of poles act as one pair: nothing becomes infinite.
-TEST(UnknownPast, EqualPolesAreNoTrouble) {
+TEST(UnknownPast, AcceptsEqualPoles) {
   UnknownPast past(kStride, 1, 2 * kShapes);
   past.begin(1);
   for (int i = 0; i < 2; ++i) past.add(0, section_poles(2));
@@ -192,7 +192,7 @@ TEST(UnknownPast, EqualPolesAreNoTrouble) {
   EXPECT_GT(energy(left, 10, kRows), 0.5 * energy(rows(kStart, 2), 10, kRows));
 }
 
-TEST(UnknownPast, GoesOnFromItsState) {
+TEST(UnknownPast, ContinuesFromItsState) {
   const double hz = 1.5;
   std::vector<double> all = rows(kStart, hz), again = all;
   UnknownPast past = past_of(hz), later(kStride, 1, kShapes);

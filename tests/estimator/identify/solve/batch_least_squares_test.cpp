@@ -53,14 +53,14 @@ TEST(BatchLeastSquares, NoiseMakesEveryFrameSofterAsThePaperFinds) {
   EXPECT_LT(last, 0.5);
 }
 
-TEST(BatchLeastSquares, RestShowsNothing) {
+TEST(BatchLeastSquares, FindsNothingAtRest) {
   const Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(kRows, test::table1().degrees_of_freedom());
   EXPECT_EQ(batch_least_squares(test::table1(), ParameterTable(test::table1()), {rest, rest, rest})
                 .size(),
             0);
 }
 
-TEST(BatchLeastSquares, AFrameThatNothingMovesIsNotMadeUp) {
+TEST(BatchLeastSquares, GivesNoValueForAFrameThatDoesNotMove) {
   // GIVEN a motion that leaves the y frames at rest: their normal equations are zero
   MotionHistory motion = table1_motion();
   const Structure s = test::table1();

@@ -139,17 +139,17 @@ void expect_dense(const Structure& s, const Eigen::VectorXd& theta, double prior
   EXPECT_NEAR(b.solver.residual_energy(), residual, kLimit * (energy + prior * n));
 }
 
-TEST(StorySolver, IsTheDenseSolution) {
+TEST(StorySolver, MatchesTheDenseSolution) {
   expect_dense(test::table1(), test::table1_theta(), 0, -1);
   expect_dense(test::table2(), test::table2_theta('c'), 0, -1);
 }
 
-TEST(StorySolver, IsTheDenseSolutionWithAPrior) {
+TEST(StorySolver, MatchesTheDenseSolutionWithAPrior) {
   expect_dense(test::table1(), test::table1_theta(), 3.5, -1);
   expect_dense(test::table2(), test::table2_theta('c'), 3.5, -1);
 }
 
-TEST(StorySolver, UnknownThatNothingShowsIsUnusableAndTheRestUnaffected) {
+TEST(StorySolver, AnUnobservableUnknownLeavesTheRestUnaffected) {
   expect_dense(test::table1(), test::table1_theta(), 0, 2);
   expect_dense(test::table2(), test::table2_theta('c'), 0, 5);
 }

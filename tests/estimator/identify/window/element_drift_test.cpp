@@ -68,7 +68,7 @@ TEST(ElementDrift, IsTheDisplacementBetweenTheEnds) {
   EXPECT_TRUE(std::isnan(e.amplitude[2]));  // a damping has no amplitude
 }
 
-TEST(ElementDrift, IsNotKnownWithoutAChannelThatShowsIt) {
+TEST(ElementDrift, IsUnknownWithoutAChannelThatShowsIt) {
   const WindowEstimate e = last_of({kBase_mps2, kBase_mps2 + kPeak_mps2, 3 * kPeak_mps2}, 2);
   EXPECT_NEAR(e.amplitude[0] / rms_m(kPeak_mps2), 1, kOff);
   EXPECT_TRUE(std::isnan(e.amplitude[1]));

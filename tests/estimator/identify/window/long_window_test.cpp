@@ -101,7 +101,7 @@ class LongWindows : public testing::Test {
   int spike_at_ = -1;  ///< instant at which a sensor reads kSpike
 };
 
-TEST_F(LongWindows, ShowWhatNoOtherWindowDoes) {
+TEST_F(LongWindows, ShowElementsThatOtherWindowsDoNot) {
   const DeliveryResult run = this->run(30'000);
   EXPECT_EQ(run.frames_of_others, 0);
   EXPECT_GT(run.others, 100);
@@ -119,7 +119,7 @@ TEST_F(LongWindows, ShowWhatNoOtherWindowDoes) {
   EXPECT_LT(error, kMaxError);
 }
 
-TEST_F(LongWindows, OneStrongMomentDoesNotStandForAllOfIt) {
+TEST_F(LongWindows, OneStrongMomentDoesNotDominate) {
   constexpr double kStronger = 300;
   const auto quake = [](test::RestlessBuilding& building, int t) {
     if (t == 12'000) building.set_ground(kStronger * kGround);
@@ -136,7 +136,7 @@ TEST_F(LongWindows, OneStrongMomentDoesNotStandForAllOfIt) {
   EXPECT_GT(error, calm_error / 6);  // a hundred times less if the spike counted
 }
 
-TEST_F(LongWindows, ASpikeOfASensorIsNoMotion) {
+TEST_F(LongWindows, IgnoreASpikeOfASensor) {
   spike_at_ = 14'000;
   const DeliveryResult run = this->run(25'000);
   ASSERT_FALSE(run.given.empty());
@@ -145,7 +145,7 @@ TEST_F(LongWindows, ASpikeOfASensorIsNoMotion) {
   EXPECT_LT(rms(off), kMaxScatter);
 }
 
-TEST_F(LongWindows, ASensorThatIsGoneForAMomentIsLeftOutAndOneThatDiesCostsItsPlace) {
+TEST_F(LongWindows, LeaveOutABriefSensorLossAndLoseADeadSensorsPlace) {
   const int top = [&] {
     for (std::size_t a = 0; a < axes_.size(); ++a)
       if (axes_[a].story == 5 && axes_[a].frame == 0) return static_cast<int>(a);

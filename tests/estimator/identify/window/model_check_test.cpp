@@ -62,7 +62,7 @@ daemon::TallTrial every_floor() {
   return t;
 }
 
-TEST(ModelCheck, OfTheRightModelIsWhatTheDesignLeaves) {
+TEST(ModelCheck, IsSmallForTheRightModel) {
   for (const daemon::TallTrial& right : {trial(), every_floor()}) {
     const Intervals is = intervals(right, 1);
     EXPECT_GT(is.published, 20);
@@ -72,7 +72,7 @@ TEST(ModelCheck, OfTheRightModelIsWhatTheDesignLeaves) {
   }
 }
 
-TEST(ModelCheck, OfWrongMassesIsAsLargeAsTheirError) {
+TEST(ModelCheck, GrowsWithTheErrorOfTheMasses) {
   daemon::TallTrial masses = every_floor();
   masses.mass_off = 0.02;
   const Intervals is = intervals(masses, 4);

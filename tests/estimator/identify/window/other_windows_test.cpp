@@ -93,7 +93,7 @@ TEST(OtherWindows, FourASecondEachFromTheSameBlocks) {
   EXPECT_LT(spread[3], 0.001);
 }
 
-TEST(HeldValues, ADyingChannelLeavesTheRestAlone) {
+TEST(HeldValues, ADyingChannelLeavesOthersAlone) {
   const Shaken b(daemon::table1(), daemon::table1_theta(), 50);
   const int lost = [&] {
     for (std::size_t a = 0; a < b.config.axes.size(); ++a)
@@ -139,7 +139,7 @@ TEST(HeldValues, ADyingChannelLeavesTheRestAlone) {
   EXPECT_LT(back_at, to + kFill + kSecond);
 }
 
-TEST(Reasons, AStiffFloorAndASymmetricPlanAreToldApart) {
+TEST(Reasons, DistinguishAStiffFloorFromASymmetricPlan) {
   // GIVEN a building with floors a hundred times too stiff to be seen, and one whose frames are all
   // alike
   const Structure s = daemon::table2();
@@ -168,7 +168,7 @@ TEST(Reasons, AStiffFloorAndASymmetricPlanAreToldApart) {
   EXPECT_EQ(of_alike.reason[panel], Observability::symmetric_plan);
 }
 
-TEST(MeasuredNoise, IsFoundAndUsedWhenNobodyConfiguredIt) {
+TEST(MeasuredNoise, IsUsedIfNoneIsConfigured) {
   Shaken b(daemon::table2(), daemon::table2_theta('c'), kDuration_s);
   std::vector<double> truth;
   for (SensorAxis& axis : b.config.axes) {
