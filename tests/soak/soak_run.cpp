@@ -57,7 +57,8 @@ constexpr std::int64_t kMaxQueued = 1 << 20;
 constexpr int kReadings = 10;
 constexpr std::chrono::milliseconds kBetweenReadings{100};
 
-/// What the process holds. Under the address sanitizer, which keeps freed memory: what it has not freed.
+/// Returns the resident memory of the process. The address sanitizer keeps freed memory resident,
+/// so under it this counts what is not freed.
 std::int64_t bytes_in_use() {
 #ifdef __SANITIZE_ADDRESS__
   return static_cast<std::int64_t>(__sanitizer_get_current_allocated_bytes());
