@@ -36,7 +36,8 @@ TEST(ConfigOptions, DefaultsAreWithinTheirRanges) {
         char* end = nullptr;
         const double value = std::strtod(text.c_str(), &end);
         EXPECT_EQ(*end, '\0');
-        EXPECT_TRUE(value >= o.range.min && value <= o.range.max && (value > o.range.min || !o.range.above_min));
+        EXPECT_TRUE(value >= o.range.min && value <= o.range.max &&
+                    (value > o.range.min || !o.range.above_min));
       }
     }
     if (o.type == OptionType::choice) {
