@@ -25,12 +25,6 @@ constexpr double kBegins = 0.05, kEnds = 0.95;  // of the Arias intensity
 constexpr double kLongestStrong_s = 300;
 constexpr double kLead_s = 60, kTail_s = 10;  // so that filters and inner floors settle
 
-int direction_of(const estimator::Structure& s, const estimator::SensorAxis& axis) {
-  return (axis.frame >= 0 ? s.direction(axis.frame) : axis.direction) == estimator::Direction::x
-             ? 0
-             : 1;
-}
-
 void take(double value, std::size_t p, SessionFloors& out) {
   if (!(value > 0)) return;
   out.theta[p] = value;
