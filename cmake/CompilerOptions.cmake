@@ -7,6 +7,7 @@ function(framewatch_options target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wcast-qual
     -Woverloaded-virtual -Wnon-virtual-dtor
+    -fno-semantic-interposition  # a call within a library goes to the library itself, so it can be inlined
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # false alarms in g++ 12: PR 105651
     $<$<BOOL:${FRAMEWATCH_WERROR}>:-Werror>)
   if(FRAMEWATCH_SANITIZE)
