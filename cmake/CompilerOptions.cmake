@@ -1,9 +1,6 @@
 # Warnings and sanitizers, applied target by target: framewatch_options(<target>).
 function(framewatch_options target)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
-  # Eigen takes malloc's alignment for granted with glibc, but not under a sanitizer: rooms with and without one
-  # must allocate alike.
-  target_compile_definitions(${target} PUBLIC EIGEN_MALLOC_ALREADY_ALIGNED=1)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wcast-qual
     -Woverloaded-virtual -Wnon-virtual-dtor
@@ -17,7 +14,9 @@ function(framewatch_options target)
     target_compile_options(${target} PUBLIC -fsanitize=${FRAMEWATCH_SANITIZE}
       -fno-sanitize=vptr,null,alignment,object-size -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
-    target_compile_definitions(${target} PUBLIC _GLIBCXX_ASSERTIONS)
+    # Eigen takes malloc's alignment for granted with glibc, but not under a sanitizer: rooms with and without
+    # one must allocate alike.
+    target_compile_definitions(${target} PUBLIC _GLIBCXX_ASSERTIONS EIGEN_MALLOC_ALREADY_ALIGNED=1)
     target_link_options(${target} PUBLIC -fsanitize=${FRAMEWATCH_SANITIZE})
   endif()
 endfunction()
