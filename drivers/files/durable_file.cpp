@@ -21,7 +21,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kWrite{250}, kSync{1000};
-constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // more is written without waiting for kWrite
+constexpr std::size_t kWriteAtOnce = std::size_t{1}
+                                     << 20;  // more is written without waiting for kWrite
 
 /// Forces a file onto the disk, and the name `fresh` unless it is empty. Returns what went wrong.
 std::string force(int file, const std::string& fresh) {
@@ -91,7 +92,7 @@ bool DurableFile::append(std::string_view bytes) {
   filling_ += bytes;
   ++counters_.appended;
   counters_.queue_high_water = std::max(counters_.queue_high_water, queued);
-  if (filling_.size() >= kAtOnce) wake_.notify_one();
+  if (filling_.size() >= kWriteAtOnce) wake_.notify_one();
   return true;
 }
 
@@ -151,7 +152,7 @@ void DurableFile::work() {
         writing_.clear();
         written_ = waiting_ = 0;
       }
-      if (!closing_ && !(done && filling_.size() >= kAtOnce)) wake_.wait_for(lock, kWrite);
+      if (!closing_ && !(done && filling_.size() >= kWriteAtOnce)) wake_.wait_for(lock, kWrite);
       if (done) {
         std::swap(writing_, filling_);
         waiting_ = writing_.size();

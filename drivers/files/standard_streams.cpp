@@ -17,7 +17,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::size_t kAtOnce = 1 << 16;
+constexpr std::size_t kReadAtOnce = 1 << 16;
 constexpr std::int64_t kAnySize = std::int64_t{1} << 40;  ///< a pipe has no size: allow the most
 
 /// Returns true if standard input is a file at its start. Another process may have read its
@@ -29,7 +29,7 @@ bool is_whole_file() {
 }
 
 std::string take_everything(int to) {
-  std::vector<char> bytes(kAtOnce);
+  std::vector<char> bytes(kReadAtOnce);
   std::int64_t sum = 0;
   for (;;) {
     const ssize_t got = ::read(STDIN_FILENO, bytes.data(), bytes.size());

@@ -15,6 +15,7 @@
 #include <framewatch/channel_table_t.hpp>
 #include <framewatch/message_layouts.hpp>
 
+#include "drivers/files/big_endian.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 
@@ -30,21 +31,9 @@ constexpr std::size_t kTimeAt = offset_of(kAccelFields, "time_us"),
                       kAccelAt = offset_of(kAccelFields, "accel_abs_mps2");
 static_assert(kAccelAt + 3 * 8 == kAccelBytes);
 
-std::uint64_t big_endian_64(const std::uint8_t* bytes) {
-  std::uint64_t value = 0;
-  std::memcpy(&value, bytes, sizeof value);
-  return __builtin_bswap64(value);
-}
-
-std::uint32_t big_endian_32(const std::uint8_t* bytes) {
-  std::uint32_t value = 0;
-  std::memcpy(&value, bytes, sizeof value);
-  return __builtin_bswap32(value);
-}
-
 bool is_accel(const std::uint8_t* bytes, std::size_t size) {
   static const auto fingerprint = static_cast<std::uint64_t>(accel_t::getHash());
-  return size == kAccelBytes && big_endian_64(bytes) == fingerprint;
+  return size == kAccelBytes && big_endian<std::uint64_t>(bytes) == fingerprint;
 }
 
 constexpr std::string_view kSuffix = "_CHANNELS";
@@ -54,21 +43,22 @@ constexpr std::string_view kSuffix = "_CHANNELS";
 std::optional<SensorNodeSample> decode_accel(const void* data, std::size_t size) {
   const auto* bytes = static_cast<const std::uint8_t*>(data);
   if (!is_accel(bytes, size)) return std::nullopt;
-  const auto time_us = static_cast<std::int64_t>(big_endian_64(bytes + kTimeAt));
+  const auto time_us = big_endian<std::int64_t>(bytes + kTimeAt);
   if (time_us > kLatestTime_us || time_us < -kLatestTime_us) return std::nullopt;
   SensorNodeSample sample{estimator::from_microseconds(time_us),
-                          static_cast<std::int64_t>(big_endian_64(bytes + kSequenceAt)),
-                          static_cast<std::int32_t>(big_endian_32(bytes + kNodeAt)),
+                          big_endian<std::int64_t>(bytes + kSequenceAt),
+                          big_endian<std::int32_t>(bytes + kNodeAt),
                           {}};
   for (std::size_t i = 0; i < 3; ++i)
-    sample.accel_abs_mps2[i] = std::bit_cast<double>(big_endian_64(bytes + kAccelAt + 8 * i));
+    sample.accel_abs_mps2[i] =
+        std::bit_cast<double>(big_endian<std::uint64_t>(bytes + kAccelAt + 8 * i));
   return sample;
 }
 
 std::optional<std::int64_t> accel_time_us(const void* data, std::size_t size) {
   const auto* bytes = static_cast<const std::uint8_t*>(data);
   if (!is_accel(bytes, size)) return std::nullopt;
-  return static_cast<std::int64_t>(big_endian_64(bytes + kTimeAt));
+  return big_endian<std::int64_t>(bytes + kTimeAt);
 }
 
 std::vector<std::uint8_t> encode_accel(const SensorNodeSample& sample) {

@@ -7,24 +7,14 @@
 #include <cstring>
 #include <iterator>
 
+#include "drivers/files/big_endian.h"
+
 namespace framewatch::drivers {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kSync{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::int64_t kSyncBytes = 4;
 constexpr std::int64_t kSearchBytes = 1 << 18;
-
-std::int64_t big_endian_64(const std::uint8_t* bytes) {
-  std::uint64_t value = 0;
-  for (int i = 0; i < 8; ++i) value = value << 8 | bytes[i];
-  return static_cast<std::int64_t>(value);
-}
-
-std::int32_t big_endian_32(const std::uint8_t* bytes) {
-  std::uint32_t value = 0;
-  for (int i = 0; i < 4; ++i) value = value << 8 | bytes[i];
-  return static_cast<std::int32_t>(value);
-}
 
 bool printable(std::uint8_t byte) {
   return byte >= 0x20 && byte != 0x7f;
@@ -75,10 +65,10 @@ bool LogScan::read_header(std::int64_t offset, LogEventHeader& header, const cha
   const std::uint8_t* bytes = at(offset, kHeaderBytes);
   if (bytes == nullptr) return refuse("unreadable");
   examined_bytes_ += kHeaderBytes;
-  header.number = big_endian_64(bytes + 4);
-  header.timestamp_us = big_endian_64(bytes + 12);
-  header.channel_length = big_endian_32(bytes + 20);
-  header.payload_length = big_endian_32(bytes + 24);
+  header.number = big_endian<std::int64_t>(bytes + 4);
+  header.timestamp_us = big_endian<std::int64_t>(bytes + 12);
+  header.channel_length = big_endian<std::int32_t>(bytes + 20);
+  header.payload_length = big_endian<std::int32_t>(bytes + 24);
   if (header.channel_length < 1 || header.channel_length > kMaxChannel)
     return refuse("channel length out of bounds (1 to 63)");
   if (header.payload_length < 0 || header.payload_length > kMaxPayload)

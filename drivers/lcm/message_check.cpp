@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "drivers/lcm/message_check.h"
+#include "drivers/files/big_endian.h"
 
 #include <algorithm>
 #include <string_view>
@@ -11,12 +12,6 @@
 
 namespace framewatch::drivers {
 namespace {
-
-std::uint64_t big_endian(std::span<const std::uint8_t> bytes) {
-  std::uint64_t value = 0;
-  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
-  return value;
-}
 
 /// Steps through the fields of a payload. Each function returns false at the end of the payload.
 class PayloadReader {
@@ -30,7 +25,7 @@ class PayloadReader {
   }
   bool length(std::size_t& value) {
     if (rest_.size() < 4) return false;
-    const std::uint64_t read = big_endian(rest_.first(4));
+    const auto read = big_endian<std::uint32_t>(rest_.data());
     if (read > INT32_MAX) return false;
     value = read;
     return skip(4);
@@ -80,7 +75,7 @@ bool matches(std::string_view lcm_channel, std::string_view pattern) {
 
 std::optional<std::int64_t> fingerprint(std::span<const std::uint8_t> payload) {
   if (payload.size() < 8) return std::nullopt;
-  return static_cast<std::int64_t>(big_endian(payload.first(8)));
+  return big_endian<std::int64_t>(payload.data());
 }
 
 bool is_well_formed(std::span<const std::uint8_t> payload, std::int64_t wanted) {

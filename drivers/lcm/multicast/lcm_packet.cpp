@@ -5,17 +5,13 @@
 
 #include <fmt/core.h>
 
+#include "drivers/files/big_endian.h"
+
 namespace framewatch::drivers {
 namespace {
 
 constexpr std::uint32_t kShort = 0x4c433032, kPart = 0x4c433033;
 constexpr std::size_t kShortHeader = 8, kPartHeader = 20;
-
-std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
-  std::uint32_t value = 0;
-  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
-  return value;
-}
 
 /// Removes the name of the channel and its NUL from `rest`. Returns false when there is no valid
 /// name.
@@ -30,7 +26,7 @@ bool take_channel(std::span<const std::uint8_t>& rest, std::string_view& channel
 
 std::optional<LcmPacket> whole_message(std::span<const std::uint8_t> datagram) {
   LcmPacket packet;
-  packet.sequence = big_endian(datagram.subspan(4, 4));
+  packet.sequence = big_endian<std::uint32_t>(datagram.data() + 4);
   packet.payload = datagram.subspan(kShortHeader);
   if (!take_channel(packet.payload, packet.channel)) return std::nullopt;
   packet.message_bytes = static_cast<std::uint32_t>(packet.payload.size());
@@ -40,11 +36,11 @@ std::optional<LcmPacket> whole_message(std::span<const std::uint8_t> datagram) {
 std::optional<LcmPacket> part_of_message(std::span<const std::uint8_t> datagram) {
   if (datagram.size() < kPartHeader) return std::nullopt;
   LcmPacket packet;
-  packet.sequence = big_endian(datagram.subspan(4, 4));
-  packet.message_bytes = big_endian(datagram.subspan(8, 4));
-  packet.offset = big_endian(datagram.subspan(12, 4));
-  packet.part = static_cast<std::uint16_t>(big_endian(datagram.subspan(16, 2)));
-  packet.parts = static_cast<std::uint16_t>(big_endian(datagram.subspan(18, 2)));
+  packet.sequence = big_endian<std::uint32_t>(datagram.data() + 4);
+  packet.message_bytes = big_endian<std::uint32_t>(datagram.data() + 8);
+  packet.offset = big_endian<std::uint32_t>(datagram.data() + 12);
+  packet.part = big_endian<std::uint16_t>(datagram.data() + 16);
+  packet.parts = big_endian<std::uint16_t>(datagram.data() + 18);
   packet.payload = datagram.subspan(kPartHeader);
   if (packet.part >= packet.parts) return std::nullopt;
   if (packet.part == 0 && !take_channel(packet.payload, packet.channel)) return std::nullopt;
@@ -58,7 +54,7 @@ std::optional<LcmPacket> part_of_message(std::span<const std::uint8_t> datagram)
 
 std::optional<LcmPacket> parse_lcm_packet(std::span<const std::uint8_t> datagram) {
   if (datagram.size() < kShortHeader) return std::nullopt;
-  const std::uint32_t magic = big_endian(datagram.first(4));
+  const std::uint32_t magic = big_endian<std::uint32_t>(datagram.data());
   if (magic == kShort) return whole_message(datagram);
   if (magic == kPart) return part_of_message(datagram);
   return std::nullopt;

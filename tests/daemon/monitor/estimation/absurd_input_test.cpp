@@ -176,6 +176,10 @@ TEST(AbsurdInput, IsSkippedInARecordFile) {
     }
 }
 
+bool carries(const drivers::CanFrame& frame, const drivers::CanMessageMap& message) {
+  return frame.extended == message.extended && ((frame.id ^ message.id) & message.mask) == 0;
+}
+
 /// Puts `pattern` into the first signal of every 50th frame with signals. Returns the number of
 /// changed frames.
 std::int64_t spoil(const Config& config, std::vector<drivers::BusFrame>& frames,
@@ -184,8 +188,8 @@ std::int64_t spoil(const Config& config, std::vector<drivers::BusFrame>& frames,
   for (drivers::BusFrame& f : frames)
     for (const drivers::CanNodeMap& node : config.can.nodes)
       for (const drivers::CanMessageMap& m : node.messages) {
-        if (node.bus != f.bus || m.readings.empty() || !matches(m, f.frame.id, f.frame.extended) ||
-            ++count % 50 != 0 || count < 1000)
+        if (node.bus != f.bus || m.readings.empty() || !carries(f.frame, m) || ++count % 50 != 0 ||
+            count < 1000)
           continue;
         drivers::put_bits(m.readings[0].field, pattern(spoiled++), f.frame.data);
       }
