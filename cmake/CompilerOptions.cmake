@@ -7,6 +7,11 @@ function(framewatch_options target)
     -fno-semantic-interposition  # a call within a library goes to the library itself, so it can be inlined
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # false alarms in g++ 12: PR 105651
     $<$<BOOL:${FRAMEWATCH_WERROR}>:-Werror>)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL EXECUTABLE)  # -fPIC as in libraries, not -fPIE: they share precompiled headers
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    target_compile_options(${target} PRIVATE -fPIC)
+  endif()
   if(FRAMEWATCH_SANITIZE)
     # vptr: g++ 12 miscompiles its own check where lcm-cpp.hpp calls a handler by member pointer.
     # null, alignment, object-size: instrument every access, and the address sanitizer sees most of
