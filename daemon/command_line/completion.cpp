@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "daemon/command_line/completion.h"
+
 #include <string_view>
 
 #include <fmt/format.h>

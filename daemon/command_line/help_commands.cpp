@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "daemon/command_line/help_commands.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -10,6 +12,7 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/command_line/command_list.h"
+#include "daemon/command_line/completion.h"
 #include "daemon/command_line/option_entries.h"
 
 namespace framewatch::daemon {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "drivers/dbc/dbc_rules.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

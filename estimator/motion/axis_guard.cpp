@@ -148,7 +148,7 @@ constexpr double kLongRun_s = 0.5;    // equal samples are stuck after this time
 constexpr double kMovingFast = 50;    // resolutions per sample: equal samples are then no accident
 constexpr double kOthersMove = 10;    // resolutions per sample that the others predict
 constexpr double kFullScale = 0.999;  // share of the configured range
-constexpr int kClippedRun = 3;
+constexpr int kClippedRun = 3;    // equal samples at the largest value so far, which are clipped
 constexpr double kFarFiner = 16;  // ratio of the smallest step to a far finer change
 constexpr int kFinerRun = 300;    // number of such changes before they are accepted
 

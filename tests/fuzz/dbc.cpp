@@ -4,6 +4,7 @@
 
 #include "drivers/can/can_frame.h"
 #include "drivers/dbc/dbc.h"
+#include "drivers/dbc/dbc_rules.h"
 #include "tests/fuzz/targets.h"
 
 namespace framewatch::test {

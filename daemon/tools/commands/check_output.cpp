@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "daemon/tools/commands/check_output.h"
+
 #include <algorithm>
 #include <numeric>
 
