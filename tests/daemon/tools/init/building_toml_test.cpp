@@ -147,9 +147,9 @@ TEST(BuildingToml, ReportsMissingAndWrongAnswersAtOnce) {
                                   {"area", "7"}});
   const std::string told = open(wrong);
   for (const char* part :
-       {"bays: bays along x, an x, bays along y", "span-y: lengths in m",
+       {"bays: write the bays along x, an x and the bays along y", "span-y: lengths in m",
         "heights: there are 3 numbers: give one for all, or 2", "mass: unknown unit lb",
-        "start: a frequency (1.8 Hz;", "area: does not apply"})
+        "start: a frequency (1.8 Hz;", "area: does not fit the other answers"})
     EXPECT_NE(told.find(part), std::string::npos) << part << "\n" << told;
 }
 
