@@ -16,7 +16,6 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
 #include "daemon/command_line/command_list.h"
-#include "daemon/command_line/help_commands.h"
 #include "daemon/command_line/option_entries.h"
 
 namespace framewatch::daemon {

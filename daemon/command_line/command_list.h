@@ -71,6 +71,10 @@ void add_json(CLI::App* command, bool& json);                       ///< --json
 void add_record_options(CLI::App* command, RecordFileArguments& record);
 void add_max_size(CLI::App* command);  ///< --max-size of unpacked input
 
+// help_commands.cpp: commands of every program.
+void add_help(CommandList& commands);
+void add_completion(CommandList& commands);
+
 // live_commands.cpp: the daemon and commands for a running daemon.
 void add_demo(CommandList& commands);
 void add_run(CommandList& commands);

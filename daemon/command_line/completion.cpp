@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "daemon/command_line/completion.h"
-
 #include <string_view>
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "daemon/command_line/help_commands.h"
-
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -12,7 +10,6 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/command_line/command_list.h"
-#include "daemon/command_line/completion.h"
 #include "daemon/command_line/option_entries.h"
 
 namespace framewatch::daemon {

@@ -33,6 +33,15 @@ struct CommandEntry {
 /// Every command of the program in the order of --help, without what is hidden.
 std::vector<CommandEntry> command_entries(const CLI::App& app);
 
+/// A completion script for a shell: "bash", "zsh" or "fish".
+std::string completion_script(const std::string& shell, const std::vector<CommandEntry>& commands);
+
+/// The manual page framewatch(1), in the language of man(7).
+std::string program_man_page(const std::vector<CommandEntry>& commands);
+/// The manual page of one command of `program`, as it is called (framewatch):
+/// framewatch-<command>(1).
+std::string command_man_page(const std::string& program, const CommandEntry& command);
+
 /// Returns arguments that are neither a command nor an option of the command, each with the
 /// probable meaning. Returns an empty list if all are known. `program`: its name in messages.
 std::vector<std::string> misspelt(const std::string& program,

@@ -11,7 +11,6 @@
 
 #include <fmt/core.h>
 
-#include "drivers/dbc/dbc_rules.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {

@@ -52,4 +52,12 @@ struct Dbc {
 std::optional<Dbc> parse_dbc(const std::string& path, const std::string& text,
                              std::vector<Problem>& problems);
 
+/// A rule that a message breaks; `line` is that of the signal or message.
+struct DbcRule {
+  std::int64_t line;
+  std::string message;
+};
+/// Returns the rules that a message breaks, apart from its syntax.
+std::vector<DbcRule> broken_rules(const DbcMessage& message);
+
 }  // namespace framewatch::drivers

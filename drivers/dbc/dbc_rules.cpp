@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "drivers/dbc/dbc_rules.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "estimator/structure/effect_catalogue.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/structure.h"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -109,6 +110,10 @@ struct EffectDescription {
   std::string_view source;  ///< publication
 };
 
+/// Returns the descriptions of all kinds in the order of EffectKind. In their equations d is an
+/// element's deformation b'y (Element::b, m) and v its rate, m/s. Forces are restoring forces added
+/// to k d + c v, N.
+std::span<const EffectDescription> effect_catalogue();
 const EffectDescription& describe(EffectKind kind);
 std::string_view name_of(EffectKind kind);
 std::optional<EffectKind> find_effect(std::string_view name);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "estimator/structure/effect_catalogue.h"
-
 #include <initializer_list>
 #include <utility>
 #include <vector>

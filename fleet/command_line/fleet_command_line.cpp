@@ -5,7 +5,6 @@
 
 #include "daemon/command_line/command_line.h"
 #include "daemon/command_line/command_list.h"
-#include "daemon/command_line/help_commands.h"
 #include "fleet/archive/manifest_command.h"
 #include "fleet/archive/task_command.h"
 #include "fleet/command_line/fleet_commands.h"

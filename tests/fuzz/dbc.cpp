@@ -4,7 +4,6 @@
 
 #include "drivers/can/can_frame.h"
 #include "drivers/dbc/dbc.h"
-#include "drivers/dbc/dbc_rules.h"
 #include "tests/fuzz/targets.h"
 
 namespace framewatch::test {

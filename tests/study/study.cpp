@@ -13,10 +13,8 @@
 
 #include <fmt/core.h>
 
-#include "estimator/structure/effect_catalogue.h"
 #include "tests/study/practice.h"
 #include "tests/study/study_case.h"
-#include "tests/study/study_record.h"
 #include "tests/study/study_score.h"
 
 namespace framewatch::study {

@@ -41,4 +41,11 @@ struct StudyCase {
 std::optional<StudyCase> make_case(const std::string& group, const std::string& name,
                                    const CaseOptions& options, std::string& why_not);
 
+/// Returns the sampled channels of a record with noise, instants x axes, m/s^2.
+Eigen::MatrixXd measured(const StudyCase& c, int record);
+
+/// Writes config.toml, train.csv.gz, holdout.csv.gz and truth.json to `directory`. Returns false
+/// and sets `error` if they cannot be written.
+bool write_case(const StudyCase& c, const std::string& directory, std::string& error);
+
 }  // namespace framewatch::study

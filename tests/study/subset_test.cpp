@@ -8,7 +8,6 @@
 
 #include "daemon/tools/diagnosis/diagnose_command.h"
 #include "tests/study/study_case.h"
-#include "tests/study/study_record.h"
 #include "tests/study/study_score.h"
 #include "tests/support/temporary.h"
 

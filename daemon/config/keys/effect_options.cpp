@@ -6,7 +6,6 @@
 
 #include "daemon/config/keys/option_table.h"
 #include "estimator/structure/effect.h"
-#include "estimator/structure/effect_catalogue.h"
 
 namespace framewatch::daemon {
 namespace {

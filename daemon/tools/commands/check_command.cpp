@@ -12,11 +12,9 @@
 #include "daemon/config/keys/section_table.h"
 #include "daemon/config/read_config.h"
 #include "daemon/config/sections/config_problems.h"
-#include "daemon/tools/commands/check_output.h"
 #include "daemon/tools/commands/check_report.h"
 #include "daemon/tools/simulation/scenario.h"
 #include "estimator/structure/effect.h"
-#include "estimator/structure/effect_catalogue.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "daemon/tools/commands/check_output.h"
-
 #include <algorithm>
 #include <numeric>
 

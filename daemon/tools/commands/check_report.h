@@ -33,4 +33,10 @@ struct CheckReport {
 /// Reports on a valid configuration. `advise`: largest number of places for further sensors.
 CheckReport make_check_report(const Config& config, int advise = 0);
 
+/// Returns several lines for people, without the warnings.
+std::string to_text(const CheckReport& report);
+/// Returns JSON of schema framewatch.check/1. `report` is empty if there are problems.
+std::string to_json(const std::string& path, const std::optional<CheckReport>& report,
+                    const std::vector<ConfigProblem>& problems);
+
 }  // namespace framewatch::daemon

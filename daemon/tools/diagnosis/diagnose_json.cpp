@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "daemon/tools/diagnosis/diagnose_json.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
 
 #include <array>
 
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/json.h"
-#include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "daemon/tools/simulation/simulation_truth.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"

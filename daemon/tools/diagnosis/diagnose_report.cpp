@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "daemon/tools/diagnosis/diagnose_report.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
 #include "daemon/base/words.h"
-#include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "daemon/tools/diagnosis/where_map.h"
 #include "estimator/diagnose/model/free_run.h"
 #include "estimator/diagnose/model/law_port.h"

@@ -23,6 +23,11 @@ struct DiagnoseOutput {
   const estimator::Diagnosis& diagnosis;
 };
 
+/// Returns the content of diagnosis.json, schema framewatch.diagnosis/1 (docs/formats.md).
+std::string diagnosis_json(const DiagnoseOutput& output);
+/// Returns the content of report.html, a self-contained page.
+std::string diagnosis_report(const DiagnoseOutput& output);
+
 // The functions below describe a diagnosis for the people who look after the building. All but
 // kind_section() return text, not HTML.
 

@@ -12,14 +12,6 @@
 
 namespace framewatch::estimator {
 
-/// Returns true if the law is a force over deformations, of one element or of every element of a
-/// place.
-bool is_element_law(LawForm form);
-/// Returns true if the law depends on past motion: hysteresis of any kind.
-bool is_hysteretic(LawForm form);
-/// Returns true if the law is a contact.
-bool is_contact(LawForm form);
-
 /// Force of joints that slip a little at any motion: z = sgn(x) |x|^p at first loading. From every
 /// reversal (x_r, z_r) on,
 ///

@@ -76,6 +76,14 @@ struct AmplitudeIndex {
   enum : std::size_t { elastic, exponent, damping, damping_exponent, slip };
 };
 
+/// Returns true if the law is a force over deformations, of one element or of every element of a
+/// place.
+bool is_element_law(LawForm form);
+/// Returns true if the law depends on past motion: hysteresis of any kind.
+bool is_hysteretic(LawForm form);
+/// Returns true if the law is a contact.
+bool is_contact(LawForm form);
+
 /// Parameters of an element law and its scales.
 struct LawValues {
   LawForm form = LawForm::power;

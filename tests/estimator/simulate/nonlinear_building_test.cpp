@@ -10,7 +10,6 @@
 
 #include "estimator/simulate/ground_motion.h"
 #include "estimator/simulate/linear_building.h"
-#include "estimator/structure/effect_catalogue.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/support/example_effects.h"
 

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/structure/effect_catalogue.h"
 #include "estimator/structure/structure.h"
 #include "tests/support/example_effects.h"
 

@@ -5,7 +5,6 @@
 
 #include "daemon/tools/simulation/scenario.h"
 #include "daemon/tools/simulation/simulation_truth.h"
-#include "estimator/structure/effect_catalogue.h"
 #include "tests/support/example_effects.h"
 
 namespace framewatch::daemon {

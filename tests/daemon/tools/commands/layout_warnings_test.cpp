@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/tools/commands/check_output.h"
 #include "daemon/tools/commands/check_report.h"
 #include "tests/support/config_fixture.h"
 

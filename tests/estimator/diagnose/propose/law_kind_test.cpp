@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/propose/needed_signal.h"
-#include "estimator/structure/effect_catalogue.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {

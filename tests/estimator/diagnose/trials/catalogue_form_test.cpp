@@ -11,7 +11,6 @@
 #include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/trials/known_effects.h"
-#include "estimator/structure/effect_catalogue.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 #include "tests/support/example_effects.h"
 
