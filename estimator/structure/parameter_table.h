@@ -33,7 +33,7 @@ struct BendingStiffness {
   }
 };
 
-/// What a parameter describes.
+/// The kind of element and of property that a parameter describes.
 enum class ParameterKind {
   frame_stiffness,   ///< of a frame in a story or in a group of stories
   panel_stiffness,   ///< of a floor panel

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Core>
+
 #include <framewatch/estimator/pipeline/pipeline.h>
 
 namespace fw = framewatch::estimator;
