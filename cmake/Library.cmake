@@ -130,6 +130,8 @@ function(framewatch_install_library archive)
   set(eigen_next ${eigen_world}.${eigen_next})
   file(RELATIVE_PATH up_from_package /${package} /)
   file(RELATIVE_PATH up_from_pkgconfig /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  string(REGEX REPLACE "/$" "" up_from_package ${up_from_package})
+  string(REGEX REPLACE "/$" "" up_from_pkgconfig ${up_from_pkgconfig})
   configure_file(${templates}/framewatch-config.cmake.in ${made}/framewatch-config.cmake @ONLY)
   write_basic_package_version_file(${made}/framewatch-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${made}/framewatch-config.cmake ${made}/framewatch-config-version.cmake
