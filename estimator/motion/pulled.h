@@ -12,14 +12,19 @@ namespace framewatch::estimator {
 template <typename Source, typename Item>
 class Pulled {
  public:
+  /// Computes the next item at every step.
   class Iterator {
    public:
+    /// Computes the first item of `source`.
     explicit Iterator(Source& source) : source_(source), item_(source.next()) {}
+    /// Returns the current item, valid until the next step.
     const Item& operator*() const { return *item_; }
+    /// Computes the next item.
     Iterator& operator++() {
       item_ = source_.next();
       return *this;
     }
+    /// Returns true after the last item.
     bool operator==(std::default_sentinel_t) const { return item_ == nullptr; }
 
    private:
@@ -27,6 +32,7 @@ class Pulled {
     const Item* item_;
   };
 
+  /// Keeps a reference to `source`, which must outlive this.
   explicit Pulled(Source& source) : source_(source) {}
   ~Pulled() {
     while (source_.next() != nullptr) {
@@ -34,7 +40,9 @@ class Pulled {
   }
   Pulled(const Pulled&) = delete;
   Pulled& operator=(const Pulled&) = delete;
+  /// Computes the first item. Call it once.
   Iterator begin() { return Iterator(source_); }
+  /// Returns the end of the loop.
   std::default_sentinel_t end() const { return {}; }
 
  private:

@@ -4,27 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "estimator/motion/axis_counters.h"
 #include "estimator/motion/sample.h"
 
 namespace framewatch::estimator {
-
-/// Counts the samples of one axis by what happened to them.
-struct AxisCounters {
-  std::int64_t received = 0;
-  std::int64_t missing = 0;   ///< instants closed without a value, or while all values stopped
-  std::int64_t late = 0;      ///< arrived after their instant was closed
-  std::int64_t repaired = 0;  ///< single losses filled by interpolation
-  std::int64_t stuck = 0;     ///< removed: the value did not change while the building moved
-  std::int64_t clipped = 0;   ///< removed: at the end of the sensor's range
-  std::int64_t rejected = 0;  ///< NaN, absurd, duplicate, off the grid or far from the others
-  std::int64_t absurd = 0;    ///< part of `rejected`: values that no sensor can have measured
-
-  void archive(auto& a) {
-    for (std::int64_t* count :
-         {&received, &missing, &late, &repaired, &stuck, &clipped, &rejected, &absurd})
-      a.within(*count, 0, a.kMaxCount);
-  }
-};
 
 /// Merges the axes' samples on one grid of instants. An instant is closed when every axis that is
 /// not silent has delivered, or when a sample `lateness` newer has arrived, so a dead sensor does

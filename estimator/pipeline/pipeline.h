@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "estimator/state/abi.h"
+
 #include "estimator/identify/estimate/estimate.h"
+#include "estimator/motion/axis_counters.h"
 #include "estimator/motion/pulled.h"
 #include "estimator/motion/sample.h"
-#include "estimator/motion/sample_merger.h"
 #include "estimator/setup/pipeline_config.h"
 #include "estimator/state/archive.h"
 #include "estimator/structure/parameter_table.h"
@@ -20,12 +22,13 @@
 
 namespace framewatch::estimator {
 
+/// Counts what a pipeline has done since its construction.
 struct PipelineCounters {
-  std::int64_t sample_sets = 0;
+  std::int64_t sample_sets = 0;    ///< merged instants
   std::int64_t interruptions = 0;  ///< breaks that restarted the window
   std::int64_t windows = 0;        ///< estimates of the main window
   std::int64_t retunes = 0;        ///< times the filters were re-tuned
-  std::vector<AxisCounters> axes;
+  std::vector<AxisCounters> axes;  ///< by configured axis
 };
 
 /// One result of a pipeline; pointers are null for what it does not have.
@@ -47,6 +50,7 @@ struct PipelineResult {
 /// construction. Long computations are spread over instants by their count (docs/performance.md).
 class Pipeline {
  public:
+  /// The results of one push() or finish().
   using Results = Pulled<Pipeline, PipelineResult>;
 
   /// Precondition: problems(config) is empty.
@@ -69,6 +73,7 @@ class Pipeline {
   /// Returns the next result of the newest push() or finish(), valid until the next call, or null.
   const PipelineResult* next();
 
+  /// Returns the table of the identified parameters. Vectors of an estimate are in its order.
   const ParameterTable& parameters() const;
   /// Returns the configured axes with the remaining fractions of their delays.
   const std::vector<SensorAxis>& axes() const;
@@ -78,16 +83,21 @@ class Pipeline {
   /// Returns the noise density of each axis, m/s^2/sqrt(Hz), configured or measured. Returns an
   /// empty vector while it is not known.
   std::vector<double> noise_density() const;
+  /// Returns the length of the main window, in instants.
   int window_rows() const;
-  /// Returns the lengths of the other windows (EstimatorOptions::other_windows_s), in whole blocks.
+  /// Returns the lengths of the other windows (EstimatorOptions::other_windows_s), in instants,
+  /// rounded to whole blocks.
   std::vector<int> other_window_rows() const;
+  /// Returns the instants from one published window to the next.
   int hop_rows() const;
+  /// Returns the counters up to now.
   PipelineCounters counters() const;
 
-  /// Save everything that later results depend on, and load it. A pipeline of the same
-  /// configuration then continues as this one would, to the bit. Do not use the pipeline after
-  /// load() returned false.
+  /// Saves everything that later results depend on to `state`.
   void save(StateWriter& state);
+  /// Loads what save() of a pipeline with the same configuration wrote. This pipeline then
+  /// continues as that one would, to the bit. Returns false if the bytes do not fit; do not use
+  /// the pipeline then.
   [[nodiscard]] bool load(StateReader& state);
 
  private:

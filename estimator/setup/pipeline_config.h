@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "estimator/state/abi.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/story_groups.h"
@@ -13,24 +14,29 @@
 
 namespace framewatch::estimator {
 
-/// The equations to identify from. matched: each floor's equations are projected on its own
-/// eigenvectors and filtered at their own frequencies (docs/equations.md). paper: the method of the
-/// paper, with one 0.1-Hz high-pass, the trapezoidal rule and plain least squares.
-enum class Variant { matched, paper };
+/// The equations to identify from.
+enum class Variant {
+  /// Each floor's equations are projected on its own eigenvectors and filtered at their own
+  /// frequencies (docs/equations.md).
+  matched,
+  /// The method of the paper, with one 0.1-Hz high-pass, the trapezoidal rule and plain least
+  /// squares.
+  paper
+};
 
 /// The options of the estimation that an operator may set. The defaults are the recommended values.
 struct EstimatorOptions {
-  Variant variant = Variant::matched;
-  double rate_hz = 100;  ///< sampling rate of the common grid
-  double window_s = 5;   ///< rounded to 20 blocks of whole samples
+  Variant variant = Variant::matched;  ///< equations to identify from
+  double rate_hz = 100;                ///< sampling rate of the common grid
+  double window_s = 5;                 ///< rounded to 20 blocks of whole samples
   /// Lengths of further windows, at most 20 times window_s. Rounded to whole blocks of the main
   /// window, at least four.
   std::vector<double> other_windows_s = {1, 2.5, 10};
   /// Length of the long windows, which accumulate motion however weak it is (LongWindow). 0: no
   /// long windows.
   double long_window_s = 0;
-  double hop_s = 0.01;  ///< between published windows; rounded to whole samples, >= 1
-  int boxplot_windows = 500;
+  double hop_s = 0.01;           ///< between published windows; rounded to whole samples, >= 1
+  int boxplot_windows = 500;     ///< windows that WindowEstimate::boxplot covers
   double high_pass_hz = 0.3;     ///< drift-control corner; the paper's variant: 0.1
   double filter_damping = 0.35;  ///< damping ratio of the oscillator sections
   double corner_ratio = 1;  ///< corner frequencies of the sections over the floors' frequencies
@@ -56,9 +62,9 @@ inline std::vector<double> window_lengths_s(const EstimatorOptions& options) {
 /// The configuration of an estimation: building, sensor axes, options and design. Check it with
 /// problems().
 struct PipelineConfig {
-  Structure structure;
-  std::vector<SensorAxis> axes;
-  EstimatorOptions options;
+  Structure structure;           ///< the building
+  std::vector<SensorAxis> axes;  ///< the sensors; samples name an axis by its index here
+  EstimatorOptions options;      ///< how to estimate
   /// Design parameters of every story, SI, in the order of ParameterTable(structure). Empty without
   /// a design.
   Eigen::VectorXd design;
@@ -69,10 +75,14 @@ struct PipelineConfig {
   /// Relative error of each parameter that these tolerances cause, for groups of stories
   /// (LayoutPrediction::design_error). Empty: not counted.
   std::vector<double> design_error = {};
-  /// Effect of a loss in one story on the values of that group and of the other groups
-  /// (LayoutPrediction::change_error, change_leak). Empty: typical values.
-  std::vector<double> change_error = {}, change_leak = {};
+  /// Effect of a loss in one story on the value of its group, relative
+  /// (LayoutPrediction::change_error). Empty: typical values.
+  std::vector<double> change_error = {};
+  /// Effect of a loss in one story on the values of the other groups, relative
+  /// (LayoutPrediction::change_leak). Empty: typical values.
+  std::vector<double> change_leak = {};
 
+  /// Returns the groups of stories that the axes identify.
   StoryGroups groups() const {
     return story_groups(structure, axes, {group_floors, bending_nmprad.any()});
   }
@@ -80,6 +90,8 @@ struct PipelineConfig {
   ParameterTable parameters() const { return ParameterTable(structure, groups(), bending_nmprad); }
 };
 
+/// Returns a message for every rule that the configuration breaks, with the key and the limit.
+/// Returns an empty vector if a Pipeline can be made of it.
 std::vector<std::string> problems(const PipelineConfig& config);
 
 /// The parameters and noise levels that the row filters are tuned to.

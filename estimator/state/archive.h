@@ -13,6 +13,8 @@
 
 #include <Eigen/Core>
 
+#include "estimator/state/abi.h"
+
 namespace framewatch::estimator {
 
 /// Types whose values are written as the bytes they have in memory.
@@ -33,6 +35,7 @@ concept PlainState = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <typename Derived>
 class StateArchive {
  public:
+  /// Archives values whose range does not matter.
   template <typename... T>
   void operator()(T&... values) {
     (item(values), ...);
@@ -140,24 +143,30 @@ class StateArchive {
 /// Writes a state as bytes.
 class StateWriter : public StateArchive<StateWriter> {
  public:
-  static constexpr bool kReading = false;
+  static constexpr bool kReading = false;  ///< it writes
+  /// Returns the bytes written up to now.
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
 
+  /// Writes a plain value.
   template <PlainState T>
   void plain(const T& value) {
     put(&value, sizeof value);
   }
+  /// Writes the number of elements and the elements.
   template <PlainState T>
   void block(const std::vector<T>& values, bool) {
     (void)count(values.size());
     put(values.data(), values.size() * sizeof(T));
   }
+  /// Writes a number of elements and returns it.
   std::size_t count(std::size_t size) {
     const std::uint64_t stored = size;
     put(&stored, sizeof stored);
     return size;
   }
+  /// Does nothing: a value that exists can be written.
   void refuse() {}
+  /// Returns true: writing to memory does not fail.
   bool good() const { return true; }
 
  private:
@@ -175,20 +184,23 @@ class StateWriter : public StateArchive<StateWriter> {
 /// returns false from then on, and the caller must discard these objects.
 class StateReader : public StateArchive<StateReader> {
  public:
-  static constexpr bool kReading = true;
+  static constexpr bool kReading = true;  ///< it reads
   /// Keeps a reference to `bytes`, which must outlive the reader.
   explicit StateReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
+  /// Returns false after a value that does not fit.
   bool good() const { return good_; }
   /// Returns true if everything was read and no byte remains.
   bool whole() const { return good_ && at_ == bytes_.size(); }
 
+  /// Reads a plain value.
   template <PlainState T>
   void plain(T& value) {
     if (!has(sizeof value)) return;
     if (std::is_same_v<T, bool> && bytes_[at_] > 1) return refuse();
     take(&value, sizeof value);
   }
+  /// Reads elements. Refuses another number of them than `values` has, unless `any_size`.
   template <PlainState T>
   void block(std::vector<T>& values, bool any_size) {
     const std::size_t size = count(values.size());
@@ -205,6 +217,7 @@ class StateReader : public StateArchive<StateReader> {
     if (stored > bytes_.size() - at_) refuse();
     return good_ ? static_cast<std::size_t>(stored) : 0;
   }
+  /// Marks the bytes as unfit: good() returns false from now on.
   void refuse() { good_ = false; }
 
  private:
@@ -227,9 +240,13 @@ class StateReader : public StateArchive<StateReader> {
 class SavedByVirtual {
  public:
   virtual ~SavedByVirtual() = default;
+  /// Writes the state.
   virtual void save(StateWriter& state) = 0;
+  /// Reads the state.
   virtual void load(StateReader& state) = 0;
+  /// Calls save().
   void archive(StateWriter& state) { save(state); }
+  /// Calls load().
   void archive(StateReader& state) { load(state); }
 };
 

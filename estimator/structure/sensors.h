@@ -22,17 +22,17 @@ struct PlanPlace {
 /// angle, without the other horizontal direction (Calibration). An axis can also be a force that a
 /// shaker or a hammer applies to the building; its values are in N with the same signs.
 struct SensorAxis {
-  std::string name;
+  std::string name;                    ///< of the channel, for people
   int story = 0;                       ///< 0 = base
   Direction direction = Direction::x;  ///< direction of the measured motion
   int frame = -1;  ///< frame that carries the axis; -1 for a base axis of the whole plan
   std::optional<PlanPlace> plan = {};  ///< replaces `frame`; `direction` is then the nearer one
-  double scale = 1.0;
-  double offset = 0.0;       ///< m/s^2, subtracted after scaling
-  double polarity = 1.0;     ///< +1 or -1
-  double delay = 0.0;        ///< s, true sample instant = stamp - delay
-  double tilt = 0.0;         ///< rad, elevation of the positive axis above the horizontal
-  double mount_angle = 0.0;  ///< rad, counter-clockwise in plan from `direction`
+  double scale = 1.0;                  ///< multiplies the raw value
+  double offset = 0.0;                 ///< m/s^2, subtracted after scaling
+  double polarity = 1.0;               ///< +1 or -1
+  double delay = 0.0;                  ///< s, true sample instant = stamp - delay
+  double tilt = 0.0;                   ///< rad, elevation of the positive axis above the horizontal
+  double mount_angle = 0.0;            ///< rad, counter-clockwise in plan from `direction`
   int cross = -1;  ///< axis of the other direction that corrects for mount_angle; -1: not corrected
   double range = 0.0;  ///< m/s^2, value of scale * raw at which the sensor clips; 0: unknown
   double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0: unknown
@@ -75,7 +75,7 @@ std::vector<SensorAxis> horizontals(const std::vector<SensorAxis>& axes);
 /// is allowed if a force drives the building and the base is at rest. Places without a sensor are
 /// allowed: StoryGroups describes what such a layout shows.
 std::vector<Problem> find_problems(const Structure& structure, const std::vector<SensorAxis>& axes);
-/// Returns the messages of find_problems().
+/// Returns the messages of find_problems() for structure and sensors.
 std::vector<std::string> problems(const Structure& structure, const std::vector<SensorAxis>& axes);
 
 }  // namespace framewatch::estimator

@@ -12,10 +12,11 @@ namespace framewatch::estimator {
 /// one damping factor. A layout with sensors on few floors identifies such groups
 /// (docs/partial.md).
 struct StoryGroup {
-  Direction direction = Direction::x;
-  int first = 1, last = 1;       ///< stories; the floors below `last` are not measured
-  std::vector<int> frames;       ///< ascending
-  bool whole_direction = false;  ///< all frames of the direction
+  Direction direction = Direction::x;  ///< of the frames
+  int first = 1;                       ///< lowest story
+  int last = 1;                        ///< highest story; the floors below it are not measured
+  std::vector<int> frames;             ///< ascending
+  bool whole_direction = false;        ///< all frames of the direction
 };
 
 /// The frame stories that the axes identify.

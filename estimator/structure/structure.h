@@ -8,22 +8,27 @@ namespace framewatch::estimator {
 
 /// One broken rule of a description and the part that breaks it.
 struct Problem {
-  std::string field;  ///< configuration key of the part; empty if a part is missing
-  int index = -1;     ///< of the sensor axis; -1 for the structure
-  std::string message;
+  std::string field;    ///< configuration key of the part; empty if a part is missing
+  int index = -1;       ///< of the sensor axis; -1 for the structure
+  std::string message;  ///< the rule, for people
 };
 
 /// The direction that a frame is parallel to, and along which its floors and sensors move.
-enum class Direction { x, y };
+enum class Direction {
+  x,  ///< along the x-parallel frames
+  y   ///< along the y-parallel frames
+};
 
 /// Returns "x" or "y".
 inline const char* letter(Direction direction) {
   return direction == Direction::x ? "x" : "y";
 }
 
-/// flexible: every floor panel shears in its plane. rigid: each floor moves as one body
-/// (diaphragm).
-enum class FloorModel { flexible, rigid };
+/// The motion of a floor in its plane.
+enum class FloorModel {
+  flexible,  ///< every floor panel shears
+  rigid      ///< the floor moves as one body (diaphragm)
+};
 
 /// The monitored building's static description. SI units.
 ///
@@ -32,25 +37,31 @@ enum class FloorModel { flexible, rigid };
 /// along its plane, positive toward +x or +y. Stories are numbered 1..N; floor i is on top of story
 /// i, floor 0 is the ground. In a plane building, one direction has no frame.
 struct Structure {
-  std::string name;
-  int stories = 0;
-  std::vector<std::string> frames_x;
-  std::vector<std::string> frames_y;
-  std::vector<double> span_x;        ///< m, between y-parallel frames; size m-1
-  std::vector<double> span_y;        ///< m, between x-parallel frames; size n-1
-  std::vector<double> story_height;  ///< m; size N
-  FloorModel floor = FloorModel::flexible;
+  std::string name;                         ///< of the building, for people
+  int stories = 0;                          ///< N
+  std::vector<std::string> frames_x;        ///< names of the x-parallel frames; size n
+  std::vector<std::string> frames_y;        ///< names of the y-parallel frames; size m
+  std::vector<double> span_x;               ///< m, between y-parallel frames; size m-1
+  std::vector<double> span_y;               ///< m, between x-parallel frames; size n-1
+  std::vector<double> story_height;         ///< m; size N
+  FloorModel floor = FloorModel::flexible;  ///< of every floor
   /// kg, [story][y line][x line] flattened; a direction without frames counts as one line.
   std::vector<double> node_mass;
 
+  /// Returns the number of x-parallel frames.
   int n() const { return static_cast<int>(frames_x.size()); }
+  /// Returns the number of y-parallel frames.
   int m() const { return static_cast<int>(frames_y.size()); }
+  /// Returns the number of frames.
   int frames() const { return n() + m(); }
+  /// Returns the number of horizontal degrees of freedom.
   int degrees_of_freedom() const { return stories * frames(); }
   /// Returns the number of panels per floor, (n-1)(m-1), or 0 if floors are rigid or the building
   /// is plane.
   int panels() const;
+  /// Returns the direction that a frame is parallel to.
   Direction direction(int frame) const { return frame < n() ? Direction::x : Direction::y; }
+  /// Returns the name of a frame.
   const std::string& frame_name(int frame) const;
   /// Returns the index of the degree of freedom of `frame` at floor `story`, story-major.
   int dof(int story, int frame) const { return (story - 1) * frames() + frame; }
