@@ -1,3 +1,9 @@
+# A program is the same, byte by byte, from whichever folder it is built (tests/entry/reproducible). A debug build keeps
+# whole paths, for debuggers. The compiler takes the last prefix that fits.
+if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+  add_compile_options(-ffile-prefix-map=${PROJECT_SOURCE_DIR}=. -ffile-prefix-map=${PROJECT_BINARY_DIR}=./build)
+endif()
+
 # Warnings and sanitizers, applied target by target: framewatch_options(<target>).
 function(framewatch_options target)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})

@@ -13,6 +13,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/json.h"
 #include "daemon/base/utc_time.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -112,6 +113,15 @@ SessionFile session_of(const Json& j) {
   return s;
 }
 
+/// Returns the schema of `json` if a later version wrote it; otherwise nullopt.
+std::optional<std::string> newer_schema(const Json& json) {
+  const std::string prefix = "framewatch.session/";
+  const auto schema = json.at("schema").get<std::string>();
+  if (!schema.starts_with(prefix)) return std::nullopt;
+  const auto number = drivers::parse_integer(std::string_view(schema).substr(prefix.size()));
+  return number && *number > 1 ? std::optional(schema) : std::nullopt;
+}
+
 }  // namespace
 
 std::string session_json(const SessionFile& s) {
@@ -150,7 +160,9 @@ std::optional<SessionFile> parse_session(const std::string& text, std::string& e
   try {
     const Json json = Json::parse(text);
     if (json.at("schema") == kSchema) return session_of(json);
-    error = "is not of schema " + std::string(kSchema);
+    error = fmt::format("is not of schema {}", kSchema);
+    if (const auto newer = newer_schema(json))
+      error = fmt::format("a newer framewatch wrote it ({}, this one knows {})", *newer, kSchema);
   } catch (const Json::exception& e) {
     error = e.what();
   }
