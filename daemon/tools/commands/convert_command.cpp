@@ -17,12 +17,10 @@
 #include "daemon/config/config.h"
 #include "daemon/config/header_differences.h"
 #include "daemon/monitor/estimates/estimate_output.h"
+#include "daemon/tools/commands/convert_input.h"
 #include "drivers/files/standard_streams.h"
-#include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_log.h"
-#include "drivers/lcm/lcm_log.h"
 #include "drivers/records/record.h"
-#include "drivers/records/record_builder.h"
 #include "drivers/records/record_csv_writer.h"
 #include "estimator/motion/svd_denoise.h"
 
@@ -51,16 +49,11 @@ using drivers::Problem;
 using drivers::Record;
 using Problems = std::vector<Problem>;
 
-constexpr double kRateTolerance = 0.02;
 constexpr std::size_t kProgressRows = 1 << 14;
 constexpr std::int64_t kMaxStartUs = 4'000'000'000'000'000;
 
 bool is_csv(const std::string& path) {
   return path == drivers::kStandardOutput || path.ends_with(".csv") || path.ends_with(".csv.gz");
-}
-
-bool is_log(const std::string& path) {
-  return path.ends_with(".lcmlog") || drivers::is_event_log(path);
 }
 
 /// Checks the arguments that need no file.
@@ -80,75 +73,6 @@ void check_arguments(const ConvertArguments& a, Problems& problems) {
     problems.push_back({"--channel", "the configuration names the LCM channels: leave one out"});
   if (std::abs(a.start_us) > kMaxStartUs)
     problems.push_back({"--start-us", fmt::format("must lie within +-{}", kMaxStartUs)});
-}
-
-bool is_force(const Record& record, const std::string& name) {
-  for (std::size_t c = 0; c < record.headers.size(); ++c)
-    if (record.names[c] == name) return record.headers[c].unit == "N";
-  return false;
-}
-
-/// Returns the range of the channel with that name, or of any accelerometer.
-drivers::PlausibleRange range_of(const std::optional<Config>& config, const Record& record,
-                                 const std::string& name) {
-  drivers::PlausibleRange range;
-  if (is_force(record, name)) range.range_mps2 = drivers::kMaxValue;
-  if (!config) return range;
-  for (const estimator::SensorAxis& axis : config->pipeline.axes) {
-    if (axis.name != name) continue;
-    range.scale = axis.scale;
-    if (axis.is_force) range.range_mps2 = drivers::kMaxValue;
-    if (axis.range > 0) range.range_mps2 = axis.range;
-  }
-  return range;
-}
-
-/// Logs implausible values and contradictions to the configuration.
-void look_at(const Record& record, const std::string& path, const std::optional<Config>& config,
-             Problems& problems) {
-  for (const std::string& doubt : drivers::implausible(
-           record, path, [&](const std::string& name) { return range_of(config, record, name); },
-           problems))
-    log(LogLevel::warning, doubt);
-  const double configured_hz = config ? config->pipeline.options.rate_hz : record.rate_hz;
-  if (std::abs(record.rate_hz / configured_hz - 1) > kRateTolerance)
-    log(LogLevel::warning, fmt::format("{}: sampled at {:.4g} Hz, but {} has rate_hz = {:g}", path,
-                                       record.rate_hz, config->path, configured_hz));
-}
-
-std::vector<Record> read_records(const ConvertArguments& a, const std::optional<Config>& config,
-                                 Problems& problems) {
-  const drivers::RecordOptions options = record_options(a.record, problems);
-  std::vector<Record> records;
-  for (const std::string& in : a.inputs) {
-    auto record = drivers::read_record(in, options, problems);
-    if (record) look_at(*record, in, config, problems);
-    if (record) records.push_back(std::move(*record));
-  }
-  return records;
-}
-
-/// Lets records of devices begin at 0, because the zero of their clock has no meaning.
-bool is_device(const Record& record) {
-  return record.names == std::vector<std::string>{"x", "y", "z"};
-}
-
-std::optional<Record> read_merged(const ConvertArguments& a, const std::optional<Config>& config,
-                                  bool& devices, Problems& problems) {
-  std::vector<Record> records = read_records(a, config, problems);
-  if (!problems.empty()) return std::nullopt;
-  devices = std::all_of(records.begin(), records.end(), is_device);
-  if (devices)
-    for (std::size_t i = 0; i < records.size(); ++i)
-      for (std::string& name : records[i].names) name = fmt::format("node{}.{}", i, name);
-  auto merged =
-      drivers::merge_records(std::move(records), a.inputs, drivers::MergeSpan::common, problems);
-  if (merged && devices) {
-    const double zero_s = merged->time_s.front();
-    merged->notes.push_back(fmt::format("time 0 is {:.6f} s of the device clock", zero_s));
-    for (double& time : merged->time_s) time -= zero_s;
-  }
-  return merged;
 }
 
 std::vector<AxisAddress> numbered(const Record& record, bool devices, const std::string& channel) {
@@ -184,17 +108,6 @@ std::vector<AxisAddress> configured(const Config& config, Record& record, Proble
   return result;
 }
 
-/// Returns the channel that was asked for, or else the only one of `found`.
-std::string chosen(const std::vector<std::string>& found, const std::string& asked) {
-  if (!asked.empty())
-    return std::find(found.begin(), found.end(), asked) != found.end() ? asked : "";
-  return found.size() == 1 ? found[0] : "";
-}
-
-std::string list(const std::vector<std::string>& names) {
-  return names.empty() ? "none" : listed(names, kNamed);
-}
-
 /// Returns the channel of the main window among several windows' estimates, which other_windows_s
 /// does not name, and prints it on stderr. Returns an empty text if that channel is missing
 /// and `asked` is empty.
@@ -209,19 +122,8 @@ std::string main_window(const std::vector<std::string>& estimates, const std::st
   std::erase(others, *main);
   log(LogLevel::notice, fmt::format("the main window's estimates, of {}; --channel takes those of "
                                     "another length: {}",
-                                    *main, list(others)));
+                                    *main, listed_channels(others)));
   return *main;
-}
-
-/// Returns why there is not exactly one channel to convert.
-std::string no_choice(const drivers::LogContents& contents, const std::string& asked) {
-  const std::string channels =
-      fmt::format("accelerations: {}; estimates: {}; other: {}", list(contents.accel),
-                  list(contents.estimates), list(contents.others));
-  if (contents.accel.empty() && contents.estimates.empty())
-    return "holds neither accelerations nor estimates; " + channels;
-  if (!asked.empty()) return fmt::format("channel {} is not one to convert; {}", asked, channels);
-  return "choose one with --channel; " + channels;
 }
 
 void write_csv(const std::string& out, const Record& record, ProgressLine& progress,
@@ -238,6 +140,10 @@ void write_csv(const std::string& out, const Record& record, ProgressLine& progr
                static_cast<double>(i) / static_cast<double>(record.time_s.size()));
   }
   if (!good || !file.close()) problems.push_back({out, file.error()});
+}
+
+void warn(const std::string& doubt) {
+  log(LogLevel::warning, doubt);
 }
 
 void report(const Record& record) {
@@ -277,11 +183,11 @@ void convert_log(const ConvertArguments& a, ProgressLine& progress, Problems& pr
   progress.follow_reading("reading " + in, a.inputs, 1);
   const auto contents = drivers::log_contents(in, problems);
   if (!contents) return;
-  const std::string accel = chosen(contents->accel, a.channel);
-  std::string estimates = chosen(contents->estimates, a.channel);
+  const std::string accel = chosen_channel(contents->accel, a.channel);
+  std::string estimates = chosen_channel(contents->estimates, a.channel);
   if (accel.empty() && estimates.empty()) estimates = main_window(contents->estimates, a.channel);
   if (accel.empty() == estimates.empty()) {
-    problems.push_back({in, no_choice(*contents, a.channel)});
+    problems.push_back({in, no_channel(*contents, a.channel)});
     return;
   }
   if (!estimates.empty()) {
@@ -294,11 +200,7 @@ void convert_log(const ConvertArguments& a, ProgressLine& progress, Problems& pr
   }
   if (a.boxplot) problems.push_back({"--boxplot", "needs estimates; this log has no estimates"});
   progress.follow_reading("reading " + in, a.inputs, 1);
-  auto record = drivers::read_accel_log(in, accel, problems);
-  Problems impossible;  // a log cannot be corrected by hand: convert it and warn
-  if (record) look_at(*record, in, {}, impossible);
-  for (const Problem& p : impossible)
-    log(LogLevel::warning, fmt::format("{}: {}", p.where, p.message));
+  auto record = read_doubted_log(in, accel, warn, problems);
   if (record && a.denoise) denoise(*record, problems);
   if (!record || !problems.empty()) return;
   report(*record);
@@ -317,7 +219,8 @@ void convert_records(const ConvertArguments& a, ProgressLine& progress, Problems
   bool devices = false;
   progress.follow_reading(a.inputs.size() == 1 ? "reading " + a.inputs[0] : "reading the records",
                           a.inputs, 1);
-  auto record = read_merged(a, config, devices, problems);
+  auto record =
+      read_merged(a.inputs, a.record, config ? &*config : nullptr, devices, warn, problems);
   if (!record) return;
   auto where = numbered(*record, devices, a.channel);
   if (!config)
@@ -350,7 +253,7 @@ int convert(const ConvertArguments& arguments) {
   check_arguments(arguments, problems);
   if (problems.empty()) {
     ProgressLine progress("convert", false);
-    if (std::any_of(arguments.inputs.begin(), arguments.inputs.end(), is_log))
+    if (std::any_of(arguments.inputs.begin(), arguments.inputs.end(), is_log_to_convert))
       convert_log(arguments, progress, problems);
     else
       convert_records(arguments, progress, problems);

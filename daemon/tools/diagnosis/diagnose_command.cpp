@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
-#include <thread>
-#include <utility>
 
 #include <fmt/core.h>
 #include <malloc.h>
@@ -17,22 +15,19 @@
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/base/words.h"
-#include "daemon/base/workers.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/effects.h"
-#include "daemon/tools/diagnosis/diagnose_records.h"
+#include "daemon/tools/diagnosis/diagnose_run.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "drivers/files/text_output.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"
-#include "estimator/diagnose/verdict/diagnose.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr int kGapRemains = 1;
-constexpr double kComponentMass = 0.1;  ///< tolerance of a component test's mass
-constexpr double kMin = 1e-6;           ///< least value of a design, which must be positive
+constexpr double kMin = 1e-6;  ///< least value of a design, which must be positive
 
 /// Returns a value of a design.
 std::string positive(double value) {
@@ -142,57 +137,12 @@ bool print_all(const std::vector<std::string>& problems) {
   return !problems.empty();
 }
 
-std::vector<estimator::EffectKind> excluded_kinds(const std::vector<std::string>& names,
-                                                  std::vector<std::string>& problems) {
-  std::vector<estimator::EffectKind> out;
-  for (const std::string& name : names) {
-    if (const auto kind = estimator::find_effect(name))
-      out.push_back(*kind);
-    else
-      problems.push_back(fmt::format("--without {}: no effect has this name", name));
-  }
-  return out;
-}
-
-std::vector<DiagnoseRecord> read_records(const Config& config, const DiagnoseArguments& a,
-                                         std::vector<std::string>& problems) {
-  const bool both_given = !a.train.empty() && !a.holdout.empty();
-  const bool any_given = !a.train.empty() || !a.holdout.empty();
-  if (a.event.empty() ? !both_given : any_given)
-    problems.push_back("give --train and --holdout, or --event alone");
-  if (!a.event.empty() && !any_given) return read_event_records(config, a.event, problems);
-  std::vector<std::string> paths = a.train;
-  paths.insert(paths.end(), a.holdout.begin(), a.holdout.end());
-  return read_diagnose_records(config, paths, a.component, problems);
-}
-
-/// Runs the diagnosis with the requested number of threads, and shows its progress on a terminal.
-/// Every piece of its parallel work counts.
-estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
-                                   const estimator::DiagnosisInput& input,
-                                   estimator::DiagnosisOptions options) {
-  if (a.component.any()) options.tolerances.mass = kComponentMass;
+/// Runs the diagnosis and shows its progress on a terminal.
+std::unique_ptr<DiagnosisRun> run_shown(const Config& config, const DiagnoseArguments& a,
+                                        std::vector<std::string>& problems) {
   ProgressLine line("diagnose", a.quiet);
-  struct {
-    std::string what;
-    double done, then;
-  } step{"", 0, 0};  // set between the calls of Workers::run()
-  const Workers workers(
-      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
-      [&](const std::string&, int pieces, int of) {
-        line(step.what, step.done + (step.then - step.done) * pieces / of);
-      });
-  options.parallel = [&](int count, const std::function<void(int)>& work) {
-    workers.run("", count, work);
-  };
-  options.within = [&](int count, const std::function<void(int)>& work) {
-    workers.run_within(count, work);
-  };
-  options.progress = [&](const std::string& what, double done, double then) {
-    step = {what, done, then};
-    line(what, done);
-  };
-  return diagnose(input.plant, input.segments, options);
+  return run_diagnosis(
+      config, a, {[&](const std::string& what, double share) { line(what, share); }, {}}, problems);
 }
 
 bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {
@@ -221,39 +171,13 @@ int diagnose_command(const DiagnoseArguments& a) {
   if (!config) return kBadInput;
 
   std::vector<std::string> problems;
-  const estimator::PipelineConfig& pipeline = config->pipeline;
-  if (a.component.any() && (pipeline.structure.stories != 1 || pipeline.structure.frames() != 1))
-    problems.push_back(a.config + ": a component test has one story and one frame");
-  estimator::DiagnosisOptions options;
-  options.holdout_from = a.event.empty() ? a.train.size() : 1;
-  options.without = excluded_kinds(a.without, problems);
-  std::vector<DiagnoseRecord> records = read_records(*config, a, problems);
-  if (print_all(problems)) return kBadInput;
-
-  const ComparedChannels compared = compared_channels(*config, records);
-  options.known = compared.known;
-  std::vector<estimator::RecordSamples> samples;
-  for (DiagnoseRecord& record : records) samples.push_back(std::move(record.samples));
-  const auto input = estimator::diagnosis_input(pipeline.structure, compared.axes, pipeline.design,
-                                                a.component, samples, pipeline.bending_nmprad);
-  if (!input) {
-    fmt::print(stderr,
-               "{}: its channels do not measure every motion that diagnose needs; see "
-               "docs/diagnosis.md\n",
-               a.config);
-    return kBadInput;
-  }
-  for (std::size_t r = 0; r < records.size(); ++r)
-    add_segment_problems(records[r].path, *input, r, a.component, problems);
-  if (print_all(problems)) return kBadInput;
-
-  const estimator::Diagnosis diagnosis = run_diagnosis(a, *input, options);
-  const DiagnoseOutput output{*config,         input->plant,         records,
-                              input->segments, options.holdout_from, diagnosis};
+  const std::unique_ptr<DiagnosisRun> run = run_shown(*config, a, problems);
+  if (print_all(problems) || !run) return kBadInput;
+  const DiagnoseOutput output = run->output();
   if (!write_outputs(a.out, output)) return kBadInput;
   if (!a.quiet) fmt::print("{}{}/report.html\n", diagnosis_text(output), a.out);
-  const bool holds = diagnosis.verdict == estimator::Verdict::adequate ||
-                     diagnosis.verdict == estimator::Verdict::explained;
+  const bool holds = run->diagnosis.verdict == estimator::Verdict::adequate ||
+                     run->diagnosis.verdict == estimator::Verdict::explained;
   return holds ? 0 : kGapRemains;
 }
 

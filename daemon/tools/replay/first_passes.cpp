@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
+#include <system_error>
 
 #include <fmt/core.h>
 
@@ -52,7 +54,7 @@ class Pass : private EstimationListener {
     survey.feed(estimation_);
     survey.end_when([this] { return windows_ >= FirstPasses::kEnough; });
     if (progress) survey.at_each([&](std::int64_t bytes, std::int64_t) { progress(bytes); });
-    for (const std::string& path : input.paths) survey.add(path);
+    input.add_to(survey);
     if (!survey.problems().empty()) return false;
     estimation_.finish();
     return true;
@@ -85,6 +87,22 @@ class Pass : private EstimationListener {
 };
 
 }  // namespace
+
+void TuningInput::add_to(ReplaySurvey& survey) const {
+  for (const std::string& path : paths) survey.add(path);
+  for (const NamedRecord& r : records) survey.add(r.name, r.record);
+}
+
+std::int64_t TuningInput::bytes() const {
+  std::int64_t sum = 0;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    if (!error) sum += static_cast<std::int64_t>(size);
+  }
+  for (const NamedRecord& r : records) sum += bytes_of(r.record);
+  return sum;
+}
 
 bool can_be_tuned(const Config& config) {
   const estimator::EstimatorOptions& o = config.pipeline.options;

@@ -12,12 +12,24 @@
 
 namespace framewatch::daemon {
 
-/// Input that FirstPasses tunes on.
+/// A record in memory, and its name in messages.
+struct NamedRecord {
+  std::string name;
+  drivers::Record record;
+};
+
+/// Input of a replay, which FirstPasses tunes on.
 struct TuningInput {
   std::vector<std::string> paths;   ///< logs and record files, in order of time
   RecordFileArguments record = {};  ///< options that record files do not state themselves
   bool salvage = false;             ///< damaged input is skipped instead of refused
   ReplaySpan span = {};
+  std::vector<NamedRecord> records = {};  ///< follow the files, in order of time
+
+  /// Passes every file and record to `survey`, in their order.
+  void add_to(ReplaySurvey& survey) const;
+  /// Returns the bytes that a survey will have counted at the end.
+  std::int64_t bytes() const;
 };
 
 /// Tunes the row filters to a record before the record is estimated, so that no window is lost to

@@ -81,22 +81,13 @@ bool judge(const ReplaySurvey& survey) {
   return survey.problems().empty();
 }
 
-std::int64_t bytes_of(const std::vector<std::string>& paths) {
-  std::int64_t sum = 0;
-  for (const std::string& path : paths) {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path, error);
-    if (!error) sum += static_cast<std::int64_t>(size);
-  }
-  return sum;
-}
-
 /// Runs one replay, from the first byte to the summary.
 class ReplayRun : private EstimationListener {
  public:
   ReplayRun(const ReplayArguments& a, const Config& config,
             std::optional<Expectations> expectations)
       : a_(a),
+        input_{a.inputs, a.record, a.salvage, a.span},
         config_(config),
         expectations_(std::move(expectations)),
         event_channel_(config.lcm.prefix + "EVENT"),
@@ -193,7 +184,7 @@ class ReplayRun : private EstimationListener {
   bool sound_beforehand() const {
     ReplaySurvey survey(config_, a_.salvage, a_.span);
     survey.declare(a_.record);
-    for (const std::string& path : a_.inputs) survey.add(path);
+    input_.add_to(survey);
     survey.finish();
     return judge(survey);
   }
@@ -203,22 +194,21 @@ class ReplayRun : private EstimationListener {
   void tune_first() {
     if (a_.one_pass || !a_.load_state.empty() || !a_.save_state.empty() || !can_be_tuned(config_))
       return;
-    Progress progress("replay: tuning", bytes_of(a_.inputs), "MB", 1e6, a_.quiet);
-    const FirstPasses first(config_, {a_.inputs, a_.record, a_.salvage, a_.span},
-                            [&](std::int64_t bytes) { progress(bytes); });
+    Progress progress("replay: tuning", input_.bytes(), "MB", 1e6, a_.quiet);
+    const FirstPasses first(config_, input_, [&](std::int64_t bytes) { progress(bytes); });
     if (first.tuning()) estimation_.start_tuned(*first.tuning());
     if (!a_.quiet && first.read()) fmt::print(stderr, "{}\n", first.note());
   }
 
   void read_everything() {
-    Progress progress("replay", bytes_of(a_.inputs), "MB", 1e6, a_.quiet);
+    Progress progress("replay", input_.bytes(), "MB", 1e6, a_.quiet);
     Pace pace(a_.speed);
     survey_.feed(estimation_);
     survey_.at_each([&](std::int64_t bytes, std::int64_t time_us) {
       progress(bytes);
       pace.wait_for(time_us);
     });
-    for (const std::string& path : a_.inputs) survey_.add(path);
+    input_.add_to(survey_);
     survey_.finish();
     if (a_.save_state.empty()) estimation_.finish();  // otherwise the input continues
   }
@@ -301,6 +291,7 @@ class ReplayRun : private EstimationListener {
   }
 
   const ReplayArguments& a_;
+  const TuningInput input_;
   const Config& config_;
   Clock::time_point start_ = Clock::now();
   std::optional<Expectations> expectations_;

@@ -50,6 +50,11 @@ std::string list(const std::map<std::string, std::int64_t>& channels) {
 
 }  // namespace
 
+std::int64_t bytes_of(const drivers::Record& record) {
+  return static_cast<std::int64_t>(record.time_s.size() * (1 + record.names.size()) *
+                                   sizeof(double));
+}
+
 ReplaySurvey::ReplaySurvey(const Config& config, bool salvage, ReplaySpan span)
     : config_(config),
       salvage_(salvage),
@@ -94,16 +99,24 @@ void ReplaySurvey::add(const std::string& path) {
     add_log(path);
     bytes_ += static_cast<std::int64_t>(size);
   } else {
-    bytes_ += static_cast<std::int64_t>(size);
     std::vector<drivers::Problem> found;
     auto record = drivers::read_record(path, record_options_, found);
     for (const drivers::Problem& p : found)
       problems_.push_back(fmt::format("{}: {}", p.where, p.message));
-    if (record) add_record({path, true, std::move(*record), {}});
+    if (record) add_record({path, true, std::move(*record), {}}, static_cast<std::int64_t>(size));
+    bytes_ += static_cast<std::int64_t>(size);
   }
 }
 
-void ReplaySurvey::add_record(ReplayInput input) {
+void ReplaySurvey::add(const std::string& name, drivers::Record record) {
+  if (ended_()) return;
+  const std::int64_t bytes = bytes_of(record);
+  add_record({name, true, std::move(record), {}}, bytes);
+  bytes_ += bytes;
+}
+
+/// bytes: the record's share of bytes(), which grows by it as the record is passed on.
+void ReplaySurvey::add_record(ReplayInput input, std::int64_t bytes) {
   const drivers::Record& record = input.record;
   for (const std::string& note : record.notes) notes_.push_back(input.path + ": " + note);
   const auto& axes = config_.pipeline.axes;
@@ -129,17 +142,20 @@ void ReplaySurvey::add_record(ReplayInput input) {
     if (const std::int64_t time_us = std::llround(time_s * 1e6); !outside(time_us))
       used_us.push_back(time_us);
   const bool in_order = used_us.empty() || extend(input.path, used_us.front(), used_us.back());
-  if (in_order && estimation_ != nullptr) give_record(input);
+  if (in_order && estimation_ != nullptr) give_record(input, bytes);
   inputs_.push_back(std::move(input));
 }
 
-void ReplaySurvey::give_record(const ReplayInput& input) {
+void ReplaySurvey::give_record(const ReplayInput& input, std::int64_t bytes) {
   const drivers::Record& record = input.record;
+  const double bytes_of_instant =
+      static_cast<double>(bytes) / static_cast<double>(record.time_s.size());
   for (std::size_t i = 0; i < record.time_s.size(); ++i) {
     const std::int64_t time_us = std::llround(record.time_s[i] * 1e6);
     if (outside(time_us)) continue;
     if (ended_()) return;
-    if (step_) step_(bytes_, time_us);
+    if (step_)
+      step_(bytes_ + static_cast<std::int64_t>(bytes_of_instant * static_cast<double>(i)), time_us);
     for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
       if (input.axis_of_column[c] >= 0)
         estimation_->sample({estimator::from_microseconds(time_us), input.axis_of_column[c],

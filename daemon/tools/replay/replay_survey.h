@@ -36,6 +36,9 @@ struct ReplaySpan {
   bool whole() const { return from_s <= 0 && to_s == std::numeric_limits<double>::infinity(); }
 };
 
+/// Returns the bytes of the record's numbers in memory.
+std::int64_t bytes_of(const drivers::Record& record);
+
 /// Checks every input for damage and against the configuration. It can pass the samples to an
 /// Estimation while it reads, so that each file is read once; the caller discards the estimates
 /// when the survey ends with problems.
@@ -65,6 +68,8 @@ class ReplaySurvey {
 
   /// Reads a file.
   void add(const std::string& path);
+  /// Takes a record from memory. `name` stands for it in messages.
+  void add(const std::string& name, drivers::Record record);
   /// Checks the input as a whole.
   void finish();
 
@@ -97,8 +102,8 @@ class ReplaySurvey {
     std::string malformed;              ///< why the first malformed message is
   };
 
-  void add_record(ReplayInput input);
-  void give_record(const ReplayInput& input);
+  void add_record(ReplayInput input, std::int64_t bytes);
+  void give_record(const ReplayInput& input, std::int64_t bytes);
   bool outside(std::int64_t time_us);
   bool left_out(const drivers::LogEvent& event);
   const drivers::AccelIntake& intake() const {

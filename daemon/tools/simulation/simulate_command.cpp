@@ -40,7 +40,6 @@ int simulate(const SimulateArguments& a) {
   drivers::TextOutput truth;
   if (!a.truth.empty() && !truth.open(a.truth))
     return refuse("simulate", fmt::format("{}: {}", a.truth, truth.error()));
-  Simulation simulation(*scenario);
   if (a.lcm) {
     const std::string& url = a.lcm_url.empty() ? scenario->config.lcm.url : a.lcm_url;
     lcm = drivers::open_lcm(url, scenario->config.lcm.reception, error);
@@ -56,18 +55,10 @@ int simulate(const SimulateArguments& a) {
   const std::int64_t count = instants(*scenario);
   {
     Progress progress("simulate", count, "instants", 1, a.quiet);
-    for (std::int64_t i = 0; i < count; ++i) {
-      const std::vector<double>& raw = simulation.next();
-      if (simulation.collapsed())
-        return refuse("simulate", fmt::format("{}: the building collapses at {:.2f} s", a.scenario,
-                                              simulation.time_s()));
-      for (const auto& output : outputs)
-        if (!output->put(simulation.time_s(), raw)) return refuse("simulate", output->error());
-      progress(i + 1);
-    }
+    const std::string problem =
+        run_simulation(*scenario, a.scenario, outputs, [&](std::int64_t done) { progress(done); });
+    if (!problem.empty()) return refuse("simulate", problem);
   }
-  for (const auto& output : outputs)
-    if (!output->close()) return refuse("simulate", output->error());
   if (!a.truth.empty() && !(truth.write(truth_json(*scenario)) && truth.close()))
     return refuse("simulate", fmt::format("{}: {}", a.truth, truth.error()));
   if (!a.quiet)

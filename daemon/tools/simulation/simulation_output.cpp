@@ -197,6 +197,30 @@ class LiveOutput : public SimulationOutput {
   std::int64_t instant_ = 0;
 };
 
+class RecordOutput : public SimulationOutput {
+ public:
+  RecordOutput(const Scenario& s, drivers::Record& record) : record_(record) {
+    record_ = {};
+    record_.names = axis_names(s.config);
+    record_.rate_hz = s.rate_hz;
+    record_.accel_mps2.resize(record_.names.size());
+    for (const estimator::SensorAxis& axis : s.config.pipeline.axes) {
+      record_.headers.emplace_back();
+      if (axis.is_force) record_.headers.back().unit = "N";
+    }
+  }
+  bool put(double time_s, const std::vector<double>& raw) override {
+    record_.time_s.push_back(time_s);
+    for (std::size_t c = 0; c < raw.size(); ++c) record_.accel_mps2[c].push_back(raw[c]);
+    return true;
+  }
+  bool close() override { return true; }
+  std::string error() const override { return {}; }
+
+ private:
+  drivers::Record& record_;
+};
+
 }  // namespace
 
 std::unique_ptr<SimulationOutput> can_output(const Scenario& s, const std::string& interface,
@@ -232,6 +256,28 @@ std::unique_ptr<SimulationOutput> file_output(const Scenario& s, const std::stri
 
 std::unique_ptr<SimulationOutput> live_output(const Scenario& s, lcm::LCM& lcm, double speed) {
   return std::make_unique<LiveOutput>(s, lcm, speed);
+}
+
+std::unique_ptr<SimulationOutput> record_output(const Scenario& s, drivers::Record& record) {
+  return std::make_unique<RecordOutput>(s, record);
+}
+
+std::string run_simulation(const Scenario& s, const std::string& name,
+                           const std::vector<std::unique_ptr<SimulationOutput>>& outputs,
+                           const std::function<void(std::int64_t done)>& step) {
+  Simulation simulation(s);
+  const std::int64_t count = instants(s);
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::vector<double>& raw = simulation.next();
+    if (simulation.collapsed())
+      return fmt::format("{}: the building collapses at {:.2f} s", name, simulation.time_s());
+    for (const auto& output : outputs)
+      if (!output->put(simulation.time_s(), raw)) return output->error();
+    if (step) step(i + 1);
+  }
+  for (const auto& output : outputs)
+    if (!output->close()) return output->error();
+  return {};
 }
 
 }  // namespace framewatch::daemon

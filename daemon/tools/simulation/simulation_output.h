@@ -3,11 +3,14 @@
 
 #include <lcm/lcm-cpp.hpp>
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "daemon/tools/simulation/simulation.h"
+#include "drivers/records/record.h"
 
 namespace framewatch::daemon {
 
@@ -39,5 +42,15 @@ std::unique_ptr<SimulationOutput> live_output(const Scenario& scenario, lcm::LCM
 /// sets the error if one cannot be opened. `scenario` must outlive the output.
 std::unique_ptr<SimulationOutput> can_output(const Scenario& scenario, const std::string& interface,
                                              double speed, std::string& error);
+
+/// Returns an output that sets `record` to the instants, in axis order. `record` must outlive it.
+std::unique_ptr<SimulationOutput> record_output(const Scenario& scenario, drivers::Record& record);
+
+/// Simulates a scenario, passes every instant to every output and closes them. `name` is the
+/// scenario's in messages. step: called with the number of instants done; may throw to end the
+/// simulation. Returns an empty string, or why it ended early.
+std::string run_simulation(const Scenario& scenario, const std::string& name,
+                           const std::vector<std::unique_ptr<SimulationOutput>>& outputs,
+                           const std::function<void(std::int64_t done)>& step);
 
 }  // namespace framewatch::daemon

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace framewatch::python {
+
+/// Adds read_record(), simulate(), replay() and diagnose() to the module.
+void add_tools(pybind11::module_& module);
+
+}  // namespace framewatch::python
