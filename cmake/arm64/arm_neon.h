@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Eigen's vectors of doubles on arm64 without fused multiply-add: this header replaces the compiler's arm_neon.h, which
-// Eigen includes (cmake/SameBits.cmake). A fused multiply-add rounds once, a product and a sum round twice, as on amd64.
+// Eigen includes this instead of the compiler's arm_neon.h (cmake/SameBits.cmake). It replaces fused
+// multiply-add, which rounds once, by a product and a sum, which round twice, as on amd64.
 #pragma once
 
 #include_next <arm_neon.h>
