@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Eigen includes this instead of the compiler's arm_neon.h (cmake/SameBits.cmake). It replaces fused
-// multiply-add, which rounds once, by a product and a sum, which round twice, as on amd64.
+// Eigen includes this instead of the compiler's arm_neon.h (cmake/SameBits.cmake). It replaces a
+// fused multiply-add, which rounds once, by a product and a sum, which round twice, as on amd64.
 #pragma once
 
 #include_next <arm_neon.h>
