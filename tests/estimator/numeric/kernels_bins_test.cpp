@@ -105,5 +105,17 @@ TEST(KernelsOfBins, EveryInstructionSetGivesTheSameBits) {
   if (others == 0) GTEST_SKIP() << "this machine has one instruction set only";
 }
 
+// On arm64 the portable kernels are its only ones: their vectors are NEON's.
+TEST(KernelsOfBins, PortableKernelsGiveTheSameBitsOnEveryArchitecture) {
+  std::uint64_t digest = 1469598103934665603u;  // FNV-1a by words
+  for (const Case& c : {Case(1, 2), Case(8, 10), Case(17, 20), Case(17, 17, 3)}) {
+    std::vector<double> matrix = c.covariance(*kernels::portable());
+    kernels::portable()->inverse_cholesky(matrix.data(), c.covariance_first.data(), c.n);
+    for (const double value : matrix)
+      digest = (digest ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211u;
+  }
+  EXPECT_EQ(digest, 0x1d2dd9eebcea6db9u);
+}
+
 }  // namespace kernels_bins_test
 }  // namespace framewatch::estimator

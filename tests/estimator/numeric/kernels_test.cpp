@@ -313,5 +313,13 @@ TEST(Kernels, EveryInstructionSetGivesTheSameBits) {
   if (others == 0) GTEST_SKIP() << "this machine has one instruction set only";
 }
 
+// On arm64 the portable kernels are its only ones: their vectors are NEON's.
+TEST(Kernels, PortableKernelsGiveTheSameBitsOnEveryArchitecture) {
+  std::uint64_t digest = 1469598103934665603u;  // FNV-1a by words
+  for (const double value : all_results(*kernels::portable()))
+    digest = (digest ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211u;
+  EXPECT_EQ(digest, 0x836e5e699a13e750u);
+}
+
 }  // namespace kernels_test
 }  // namespace framewatch::estimator
