@@ -17,7 +17,6 @@
 #include "daemon/base/words.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/effects.h"
-#include "daemon/tools/diagnosis/diagnose_run.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "drivers/files/text_output.h"
 #include "estimator/diagnose/trials/catalogue_form.h"

@@ -8,13 +8,24 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/tools/diagnosis/diagnose_command.h"
 #include "daemon/tools/diagnosis/diagnose_records.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "estimator/diagnose/fit/diagnosis_input.h"
+#include "estimator/diagnose/model/plant.h"
 #include "estimator/diagnose/verdict/diagnosis.h"
 
 namespace framewatch::daemon {
+
+struct DiagnoseArguments {
+  std::string config;
+  std::vector<std::string> train, holdout;  ///< record files and LCM event logs
+  std::string event;                 ///< id of a gap event whose stored samples replace these files
+  std::string out;                   ///< directory for diagnosis.json, report.html, model.toml
+  std::vector<std::string> without;  ///< names of effects to exclude
+  estimator::ComponentTest component;
+  int threads = 0;  ///< 0: as many as the machine has
+  bool quiet = false;
+};
 
 /// A diagnosis with everything that it was made from.
 struct DiagnosisRun {
