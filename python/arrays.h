@@ -3,6 +3,7 @@
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>  // in every source, so that all convert alike
 
 #include <cstddef>
 #include <cstdint>

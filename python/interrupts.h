@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>  // in every source, so that all convert alike
 
 #include <chrono>
 #include <exception>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "python/tools.h"
 
-#include <pybind11/stl.h>
-
 #include <memory>
 #include <optional>
 #include <string>

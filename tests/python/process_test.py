@@ -34,20 +34,26 @@ class Process(Shaken):
             np.concatenate([record.accel] * 180),
         )
 
-    def interrupted_after(self, seconds, call):
-        """Sends Ctrl-C during the call. Returns the seconds until KeyboardInterrupt arrived."""
+    def interrupted(self, call, delay_s=0):
+        """Sends Ctrl-C `delay_s` after the call's first report. Returns the seconds until it ended."""
         sent = []
 
         def send():
-            time.sleep(seconds)
+            time.sleep(delay_s)
             sent.append(time.monotonic())
             os.kill(os.getpid(), signal.SIGINT)
 
         sender = threading.Thread(target=send)
-        sender.start()
-        with self.assertRaises(KeyboardInterrupt):
-            call()
-        sender.join()
+
+        def begin(*_):
+            if not sender.ident:
+                sender.start()
+
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                call(begin)
+        finally:
+            sender.join()
         return time.monotonic() - sent[0]
 
     def without_noise(self):
@@ -57,19 +63,28 @@ class Process(Shaken):
         return text.replace('"building.toml"', f'"{self.building}"')
 
     def test_ctrl_c_ends_replay(self):
-        took = self.interrupted_after(1, lambda: framewatch.replay(self.building, self.long))
+        took = self.interrupted(
+            lambda begin: framewatch.replay(self.building, self.long, progress=begin)
+        )
         self.assertLess(took, 5)
         self.assertGreater(len(framewatch.replay(self.building, self.record)), 1000)
 
     def test_ctrl_c_ends_simulate(self):
-        took = self.interrupted_after(
-            1, lambda: framewatch.simulate(self.without_noise(), duration_s=400_000)
+        took = self.interrupted(
+            lambda begin: framewatch.simulate(
+                self.without_noise(), duration_s=400_000, progress=begin
+            )
         )
         self.assertLess(took, 5)
 
     def test_ctrl_c_during_push_tells_what_was_taken(self):
         estimator = framewatch.Estimator(self.building)
-        self.interrupted_after(0.5, lambda: estimator.push(self.long.time_s, self.long.accel))
+
+        def push(begin):
+            begin()
+            estimator.push(self.long.time_s, self.long.accel)
+
+        self.interrupted(push, delay_s=0.1)
         taken = int(np.searchsorted(np.round(self.long.time_s * 1e6), estimator.newest_us)) + 1
         self.assertTrue(0 < taken < len(self.long))
         rest = slice(taken, taken + 300)
@@ -79,8 +94,7 @@ class Process(Shaken):
     def test_progress_of_replay(self):
         told = []
         framewatch.replay(
-            self.building, framewatch.Record(
-                self.long.names, self.long.time_s[:40_000], self.long.accel[:40_000]),
+            self.building, self.long,
             progress=lambda what, share: told.append((what, share, threading.get_ident())),
         )
         self.assertGreater(len(told), 2)
