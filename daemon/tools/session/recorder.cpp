@@ -36,17 +36,6 @@ bool has_lcm_axes(const Config& config) {
                      [](const AxisSource& s) { return s.can.empty(); });
 }
 
-/// Returns the horizontal axes of the base, or all horizontal axes if the base has no sensor.
-std::vector<std::size_t> axes_that_trigger(const std::vector<estimator::SensorAxis>& axes) {
-  std::vector<std::size_t> base, all;
-  for (std::size_t a = 0; a < axes.size(); ++a) {
-    if (!axes[a].horizontal()) continue;
-    all.push_back(a);
-    if (axes[a].story == 0) base.push_back(a);
-  }
-  return base.empty() ? all : base;
-}
-
 }  // namespace
 
 Recorder::Recorder(const Config& config, std::string sessions, Ended ended)
@@ -61,7 +50,7 @@ Recorder::Recorder(const Config& config, std::string sessions, Ended ended)
       rest_(config.pipeline.axes.size(), config.pipeline.options.rate_hz),
       check_(acquisition_.axes(), config.pipeline.options.rate_hz),
       taps_(config.pipeline.axes.size(), config.pipeline.options.rate_hz),
-      trigger_axes_(axes_that_trigger(config.pipeline.axes)),
+      trigger_axes_(estimator::shaken_axes(config.pipeline.axes)),
       before_(kMaxBefore_s, kMaxBeforeBytes),
       polarity_(config.pipeline.axes.size(), 0) {}
 
