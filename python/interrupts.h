@@ -45,7 +45,7 @@ class Interrupts {
 /// Thrown into a computation to end it.
 struct Stopped : std::exception {};
 
-/// What a computation in a thread of its own tells the thread that waits for it.
+/// Carries reports from a computation to the thread that waits for it.
 class Reports {
  public:
   virtual ~Reports() = default;

@@ -38,8 +38,8 @@ class Arguments {
   std::uint64_t state_ = 88172645463325252u;
 };
 
-/// Digest (FNV-1a by words) of a function's values. A value that is no number counts as one, of any
-/// sign.
+/// Returns the FNV-1a digest of a function's values, word by word. Every NaN counts as the word 1,
+/// whatever its sign.
 template <typename Function>
 std::uint64_t digest(Function function) {
   Arguments arguments;

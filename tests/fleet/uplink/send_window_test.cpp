@@ -155,7 +155,7 @@ TEST(VerdictTest, AcceptsTheNumberOfAStoredMessage) {
   EXPECT_FALSE(verdict(R"({"stream":"FW_EVENT","seq":7,"duplicate":"yes"})").duplicate);
 }
 
-// The same 503 from nats-server 2.9.10.
+// nats-server 2.9.10 answers with code 503 in both cases; the error code tells them apart.
 TEST(VerdictTest, TellsAFullStreamFromAnAbsentHub) {
   const Verdict full =
       verdict(R"({"error":{"code":503,"err_code":10077,"description":"maximum bytes exceeded"}})");

@@ -115,7 +115,8 @@ TEST(GroupAccuracy, IsPredictedFromTheDesign) {
   EXPECT_NEAR(std::exp(damping), 1, 0.3);
 }
 
-/// The same motion on every floor, read by axes on frames or at places in plan.
+/// Returns the configuration of the record. `at_places`: the axes above the base are not on frames
+/// but at the plan's origin.
 PipelineConfig everywhere(const TallRecord& record, bool at_places) {
   PipelineConfig config = record.config;
   config.options.self_tune = false;
