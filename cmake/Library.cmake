@@ -24,7 +24,7 @@ set(FRAMEWATCH_ABI 0)
 # framewatch_objects_of_library(<variable>): objects of the rooms up to estimator/pipeline, none with a sanitizer.
 function(framewatch_objects_of_library variable)
   get_property(folders GLOBAL PROPERTY FRAMEWATCH_ROOMS)
-  get_property(plain GLOBAL PROPERTY FRAMEWATCH_PLAIN_ROOMS)
+  get_property(plain GLOBAL PROPERTY FRAMEWATCH_PLAIN)
   set(objects "")
   foreach(folder IN LISTS folders)
     string(REPLACE "/" "_" room ${folder})
