@@ -90,9 +90,15 @@ constexpr int kVertical = 2;  ///< stands beside the two directions
 
 std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
   std::vector<AxisGuard::Axis> out;
-  for (const SensorAxis& axis : axes)
-    out.push_back(
-        {axis.range, axis.vertical ? kVertical : static_cast<int>(axis.direction), !axis.is_force});
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const SensorAxis& axis = axes[a];
+    const auto same = std::find_if(axes.begin(), axes.end(), [&](const SensorAxis& other) {
+      return !axis.group.empty() && other.group == axis.group;
+    });
+    const auto group = same == axes.end() ? static_cast<std::ptrdiff_t>(a) : same - axes.begin();
+    out.push_back({axis.range, axis.vertical ? kVertical : static_cast<int>(axis.direction),
+                   static_cast<int>(group), !axis.is_force});
+  }
   return out;
 }
 

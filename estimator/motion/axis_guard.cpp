@@ -19,12 +19,17 @@ constexpr double kNeverChanged = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-SpikeGuard::SpikeGuard(int axes, double rate_hz)
+SpikeGuard::SpikeGuard(const std::vector<int>& groups, double rate_hz)
     : second_(std::max(2, static_cast<int>(std::lround(rate_hz)))),
       period_(std::max(2, static_cast<int>(std::lround(kPeriod_s * rate_hz)))),
       longest_(static_cast<int>(std::lround(kLongest_s * rate_hz))),
-      axis_(static_cast<std::size_t>(axes)) {
-  for (Axis& axis : axis_) axis.still = kNeverStirred;
+      axis_(groups.size()) {
+  const bool one = std::adjacent_find(groups.begin(), groups.end(),
+                                      [](int a, int b) { return a != b; }) == groups.end();
+  for (std::size_t a = 0; a < axis_.size(); ++a) {
+    axis_[a].group = one ? static_cast<int>(a) : groups[a];
+    axis_[a].still = kNeverStirred;
+  }
 }
 
 bool SpikeGuard::beyond(const Axis& a, double value, double steps) const {
@@ -76,7 +81,7 @@ bool SpikeGuard::others_stir(int axis) const {
   for (int b = 0; b < static_cast<int>(axis_.size()); ++b) {
     const Axis& other = axis_[static_cast<std::size_t>(b)];
     if (b == axis || std::isnan(other.held[0])) continue;
-    if (other.still <= kStirring) return true;
+    if (other.still <= kStirring && other.group != of(axis).group) return true;
     any = true;
   }
   return !any;  // no other axis contradicts it
@@ -152,6 +157,12 @@ constexpr int kClippedRun = 3;    // equal samples at the largest value so far, 
 constexpr double kFarFiner = 16;  // ratio of the smallest step to a far finer change
 constexpr int kFinerRun = 300;    // number of such changes before they are accepted
 
+std::vector<int> groups_of(const std::vector<AxisGuard::Axis>& axes) {
+  std::vector<int> out;
+  for (const AxisGuard::Axis& axis : axes) out.push_back(axis.group);
+  return out;
+}
+
 }  // namespace
 
 AxisGuard::AxisGuard(const std::vector<Axis>& axes, double rate_hz, bool lone_spikes)
@@ -161,7 +172,7 @@ AxisGuard::AxisGuard(const std::vector<Axis>& axes, double rate_hz, bool lone_sp
       long_run_(std::max(kLookAhead + 1, static_cast<int>(std::lround(kLongRun_s * rate_hz)))),
       lone_spikes_(lone_spikes),
       state_(axes.size()),
-      spikes_(static_cast<int>(axes.size()), rate_hz),
+      spikes_(groups_of(axes), rate_hz),
       ring_(kSlots) {
   for (std::size_t a = 0; a < axes.size(); ++a) state_[a].axis = axes[a];
   for (std::size_t a = 0; a < axes.size(); ++a) {

@@ -17,8 +17,10 @@ namespace framewatch::estimator {
 /// A sample is doubtful when it lies kFar mean steps (changes per sample) beyond the newest
 /// extremes of its axis, by a step that is kAbrupt times the one before. It is sound in two cases.
 /// First, within kLookAhead instants another axis makes a step of kStirred times its own mean step,
-/// as in an onset, a tap or an impact. Second, the axis rings: the following samples are smaller,
-/// or return and move out again, none of them by more than kMaxAlone.
+/// as in an onset, a tap or an impact. An axis of the same group is not a witness unless all axes are
+/// in one group, because axes of one message, node or cable fail together. Second, the axis rings:
+/// the following samples are smaller, or return and move out again, none of them by more than
+/// kMaxAlone.
 ///
 /// Otherwise the sample is absurd, and so are the following ones until the axis returns, for at
 /// most kLongest_s; what lasts longer is a new bias. No sample is doubtful before the axis has
@@ -32,7 +34,8 @@ class SpikeGuard {
   static constexpr int kStirring = 10;      ///< instants for which a large step counts
   static constexpr double kLongest_s = 1.2, kPeriod_s = 2;
 
-  SpikeGuard(int axes, double rate_hz);
+  /// groups: a number for each axis. Axes with the same number fail together.
+  SpikeGuard(const std::vector<int>& groups, double rate_hz);
 
   /// The samples that are decided now, as bits of ages; bit 0 is the newest sample.
   struct Decided {
@@ -51,6 +54,7 @@ class SpikeGuard {
 
  private:
   struct Axis {
+    int group = 0;
     double last = 0;                         ///< newest sound value
     double step = 0, step_before = 0;        ///< mean change now, and at the end of the last period
     double change = 0;                       ///< newest change
@@ -75,6 +79,7 @@ class SpikeGuard {
     }
   };
   Axis& of(int axis) { return axis_[static_cast<std::size_t>(axis)]; }
+  const Axis& of(int axis) const { return axis_[static_cast<std::size_t>(axis)]; }
   bool beyond(const Axis& axis, double value, double steps) const;
   bool others_stir(int axis) const;
   void take(Axis& axis, double value) const;
@@ -113,6 +118,7 @@ class AxisGuard {
   struct Axis {
     double range = 0;    ///< m/s^2 of the scaled value; 0: unknown
     int direction = 0;   ///< axes of one direction are compared
+    int group = 0;       ///< axes with the same number fail together
     bool judged = true;  ///< false for a force, which rests at 0 and jumps when a hammer strikes
   };
   /// lone_spikes: keep what a single axis shows, because someone taps at the sensors.

@@ -17,6 +17,10 @@
 
 namespace framewatch::estimator {
 
+/// The format of what is written. Increase it whenever archive() of any class changes, and read the
+/// older bytes where StateArchive::since() says that they are.
+inline constexpr int kStateFormat = 18;
+
 /// Types whose values are written as the bytes they have in memory.
 template <typename T>
 concept PlainState = std::is_arithmetic_v<T> || std::is_enum_v<T>;
@@ -68,8 +72,14 @@ class StateArchive {
     self().block(values, true);
   }
 
+  /// Returns true if the bytes have at least this format.
+  bool since(int format) const { return format_ >= format; }
+
   static constexpr double kMax = 1e100;        ///< magnitude of any sum of squares of motion
   static constexpr double kMaxCount = 4.5e15;  ///< largest whole number: exact, far from overflow
+
+ protected:
+  int format_ = kStateFormat;
 
  private:
   Derived& self() { return static_cast<Derived&>(*this); }
@@ -185,8 +195,11 @@ class StateWriter : public StateArchive<StateWriter> {
 class StateReader : public StateArchive<StateReader> {
  public:
   static constexpr bool kReading = true;  ///< it reads
-  /// Keeps a reference to `bytes`, which must outlive the reader.
-  explicit StateReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
+  /// Keeps a reference to `bytes`, which must outlive the reader. format: of the bytes.
+  explicit StateReader(const std::vector<std::uint8_t>& bytes, int format = kStateFormat)
+      : bytes_(bytes) {
+    format_ = format;
+  }
 
   /// Returns false after a value that does not fit.
   bool good() const { return good_; }

@@ -36,6 +36,7 @@ struct SensorAxis {
   int cross = -1;  ///< axis of the other direction that corrects for mount_angle; -1: not corrected
   double range = 0.0;  ///< m/s^2, value of scale * raw at which the sensor clips; 0: unknown
   double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0: unknown
+  std::string group = {};      ///< axes that fail together: of one node, cable or supply; "": alone
   bool check = false;          ///< compared with the prediction, not used for identification
   bool is_force = false;       ///< measures a force on the building
   /// A vertical axis of the base, positive upward, at a place in plan. Its direction has no

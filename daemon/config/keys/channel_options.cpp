@@ -108,6 +108,11 @@ const Option kChannel[] = {
      .type = text,
      .meaning = "Nearest channel of the other horizontal direction.",
      .by_hand = "the name of another channel, which may stand further down"},
+    {.key = "group",
+     .type = text,
+     .meaning = "Name of a node, cable or supply. Channels with the same name fail together, so "
+                "none of them confirms what another shows. Default: the node or CAN message.",
+     .target = into<&estimator::SensorAxis::group>},
     {.key = "range_mps2",
      .unit = "m/s^2",
      .range = {0, 1e6},

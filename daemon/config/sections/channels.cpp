@@ -117,6 +117,14 @@ AxisSource read_source(ConfigSection& channel, const std::string& label,
   return source;
 }
 
+/// Returns a name for what sends a source's samples; "" if they come from files only.
+std::string node_of(const AxisSource& source) {
+  if (!source.dbc_signal.empty())
+    return fmt::format("{} {}", source.can,
+                       source.dbc_signal.substr(0, source.dbc_signal.find('.')));
+  return source.sensor_node < 0 ? "" : fmt::format("{} {}", source.lcm_channel, source.sensor_node);
+}
+
 /// Reads the keys of a force in N, or refuses them for an accelerometer.
 void read_quantity(ConfigSection& section, estimator::SensorAxis& axis) {
   axis.is_force = section.given("quantity") && section.text("quantity") == "force";
@@ -162,8 +170,9 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
     read_quantity(section, axis);
     read_place(section, reading, axis);
   }
-  config.pipeline.axes.push_back(axis);
   config.sources.push_back(read_source(section, label, problems));
+  if (axis.group.empty()) axis.group = node_of(config.sources.back());
+  config.pipeline.axes.push_back(axis);
   channels.push_back(std::move(section));
 }
 

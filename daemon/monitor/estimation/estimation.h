@@ -85,6 +85,7 @@ class EstimationListener {
 struct StateSection {
   std::string name;
   std::vector<std::uint8_t> bytes;
+  int format = estimator::kStateFormat;
 };
 
 /// Turns input messages into output messages: intakes (LCM, CAN), pipeline, change detection, gap

@@ -119,7 +119,7 @@ std::string Estimation::load(const std::vector<StateSection>& sections) {
   each_section([&](const char* name, const auto& archive) {
     const auto section = std::ranges::find(sections, name, &StateSection::name);
     if (section == sections.end() || !spoilt.empty()) return;
-    estimator::StateReader reader(section->bytes);
+    estimator::StateReader reader(section->bytes, section->format);
     archive(reader);
     if (!reader.whole()) spoilt = name;
   });

@@ -57,7 +57,8 @@ const Description* find(std::string_view name) {
 }
 
 const std::string kMagic = "framewatch state\n";
-constexpr std::int32_t kFormat = 17;  ///< increase it whenever archive() of any class changes
+constexpr std::int32_t kFormat = estimator::kStateFormat;
+constexpr std::int32_t kOldestFormat = 17;  ///< the oldest that is read
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMaxBytes = std::int64_t{1} << 30;
 constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head; a real one has about ten
@@ -165,7 +166,7 @@ ReadState read_state(const std::string& path) {
   head.archive_identity(reader);
   if (head.magic != kMagic) return {"is not a state of framewatch"};
   // Another version of the program may load it, so that an upgrade keeps the window.
-  if (reader.good() && head.format != kFormat)
+  if (reader.good() && (head.format < kOldestFormat || head.format > kFormat))
     return {fmt::format("was written by framewatch {} (format {}), this is {} (format {})",
                         head.version, head.format, FRAMEWATCH_VERSION, kFormat)};
   head.archive_rest(reader);
@@ -182,7 +183,7 @@ ReadState read_state(const std::string& path) {
   for (const Head::Entry& entry : head.entries) {
     const std::size_t size = std::min(static_cast<std::size_t>(entry.size), bytes.size() - at);
     const auto begin = bytes.begin() + std::ptrdiff_t(at);
-    StateSection section{entry.name, {begin, begin + std::ptrdiff_t(size)}};
+    StateSection section{entry.name, {begin, begin + std::ptrdiff_t(size)}, head.format};
     at += size;
     if (size < static_cast<std::size_t>(entry.size))
       out.lost.push_back({entry.name, "is cut off"});

@@ -22,6 +22,9 @@ class NoiseCompensation {
   /// the tuning assumes.
   void update(const RowFilter& rows, const WindowParts& sums, double level);
 
+  /// Keeps this share of a floor's instants, 0..1.
+  void keep(int floor, double share) { floor_[static_cast<std::size_t>(floor)].instants *= share; }
+
   /// Stands for values[i] * scale.
   struct Part {
     const double* values;

@@ -67,10 +67,6 @@ class BatchMeans {
   /// Abandons the pass in progress, if any. Results remain.
   void cancel() { next_step_ = steps(); }
 
-  /// Multiplies the results of an unknown by `factor`, because its theta0 has changed.
-  void rescale(int unknown, double factor) {
-    std_error_[static_cast<std::size_t>(unknown)] *= factor;
-  }
   /// Returns the standard errors, internal order, relative to theta0.
   const std::vector<double>& std_error() const { return std_error_; }
   /// Returns the share of the prior in the solution, 0..1 up to rounding.

@@ -208,7 +208,7 @@ void LongWindow::solve(const Context& c) {
       &shape_,         sum_.data(), zero_.data(), zero_.data(), static_cast<int>(std::lround(rows)),
       &whole_instants_};
   solution_.solve(sums, c.regression->rows(), c.trust, true);
-  solution_.begin_errors(*this, solution_);
+  solution_.begin_errors(*this, kPieces, solution_);
   for (std::size_t u = 0; u < fit_.size(); ++u) {
     const double x = solution_.solver().solution()[u];
     fit_[u] = solution_.shown(static_cast<int>(u)) ? x : 1.0;

@@ -55,7 +55,8 @@ const WindowEstimate* OtherWindows::advance(const Context& c) {
     const WindowParts sums = c.regression->sums().span(current_);
     rows_ = sums.rows;
     window.solution.solve(sums, c.regression->rows(), c.trust, true);
-    window.solution.begin_errors(c.regression->sums(), *c.main);
+    window.solution.begin_errors(c.regression->sums(), rows_ / c.regression->sums().block_rows(),
+                                 *c.main);
     solved_ = true;
     return nullptr;
   }
@@ -112,7 +113,7 @@ WindowSeries::Done WindowSeries::advance(TunedRegression& regression, const Inst
   done.block = regression.finish(*now.ring);
   done.closed = done.block && regression.suffices();
   if (done.closed) {
-    main_.begin_errors(regression.sums(), main_);
+    main_.begin_errors(regression.sums(), regression.sums().blocks(), main_);
     others_.block_closed(regression.sums(), now.window_end);
     return done;
   }

@@ -16,9 +16,17 @@ constexpr double kInflation = 4;  // correlated residuals overstate the informat
 constexpr double kSymmetric = 0.02;
 constexpr double kHeld = 0.01;  // relative width of the prior of a held unknown
 constexpr double kRounding = 1e-12;
-constexpr int kFirstPasses = 5;  // until the noise level no longer changes
+constexpr double kExplained = 2;  // standard errors
+constexpr int kFirstPasses = 5;   // until the noise level no longer changes
 /// Largest level of known noise in groups, whose residual usually comes from the model.
 constexpr double kMaxOfKnownNoise = 2;
+
+/// Returns the number of blocks in the longest window.
+int most_blocks(const EstimatorOptions& options) {
+  double longest_s = options.window_s;
+  for (const double length_s : options.other_windows_s) longest_s = std::max(longest_s, length_s);
+  return static_cast<int>(std::ceil(BatchMeans::kBlocks * longest_s / options.window_s)) + 1;
+}
 
 }  // namespace
 
@@ -33,6 +41,9 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       warm_share_(warm),
       solver_(layout),
       errors_(layout, compensation),
+      influential_(layout, most_blocks(options), compensation),
+      std_error_(static_cast<std::size_t>(layout.unknowns()), 0),
+      checked_(std_error_.size(), 0),
       misfit_(layout),
       misfit_error_(static_cast<std::size_t>(layout.unknowns()), 0),
       prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
@@ -66,6 +77,7 @@ void WindowSolution::hold(int unknown, double ratio, double std_error) {
 
 void WindowSolution::restart() {
   errors_.cancel();
+  influential_.cancel();
   errors_known_ = solved_ = false;
   fresh_ = true;
   overcompensated_ = false;
@@ -106,11 +118,29 @@ void WindowSolution::solve(const WindowParts& sums, const RowFilter& rows, const
 }
 
 bool WindowSolution::advance_errors(int steps) {
+  influential_.advance(steps);
   if (!errors_.advance(steps)) return false;
   errors_known_ = true;
+  checked_ = influential_.solution();
+  for (std::size_t u = 0; u < std_error_.size(); ++u)
+    std_error_[u] = influential_.error(static_cast<int>(u), errors_.std_error()[u]);
   for (std::size_t u = 0; u < misfit_error_.size(); ++u)
     misfit_error_[u] = misfit_.error(static_cast<int>(u), errors_.inverse_diagonal()[u]);
   return true;
+}
+
+void WindowSolution::rescale(int unknown, double factor) {
+  std_error_[static_cast<std::size_t>(unknown)] *= factor;
+  checked_[static_cast<std::size_t>(unknown)] *= factor;
+}
+
+/// Returns the standard error of the present solution. std_error() is that of an earlier one, at
+/// most two blocks ago. Noise alone moves the solution in that time by less than kExplained of its
+/// errors; what it moved beyond is an error too.
+double WindowSolution::present_error(int unknown) const {
+  const auto u = static_cast<std::size_t>(unknown);
+  const double moved = std::abs(solver_.solution()[u] - checked_[u]);
+  return std::max(std_error_[u], moved - kExplained * std_error_[u]);
 }
 
 double WindowSolution::misfit(int unknown) const {
@@ -136,7 +166,7 @@ double WindowSolution::gate_level() const {
 bool WindowSolution::published(int unknown) const {
   const auto u = static_cast<std::size_t>(unknown);
   return shown(unknown) &&
-         errors_.std_error()[u] < unknowns_[u].error_limit * solver_.solution()[u];
+         present_error(unknown) < unknowns_[u].error_limit * solver_.solution()[u];
 }
 
 bool WindowSolution::place_known(int unknown) const {
@@ -217,7 +247,7 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     e.value[p] = observable ? e.solution[p] : kNaN;
     const double of_share =
         share_error_.empty() ? 0 : share_error_[static_cast<std::size_t>(own)] * e.solution[p];
-    e.std_error[p] = observable ? std::hypot(theta0 * errors_.std_error()[i], of_share) : kNaN;
+    e.std_error[p] = observable ? std::hypot(theta0 * present_error(u), of_share) : kNaN;
     const double noise = noise_.energy()[i] * gate_level();
     e.snr[p] = solved_ && noise > 0 ? solver_.information()[i] / noise : 0;
     const bool shares = solved_ && errors_known_;

@@ -9,6 +9,7 @@
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/gram/sliding_gram.h"
 #include "estimator/identify/regressors/row_tuning.h"
+#include "estimator/identify/solve/influential_part.h"
 #include "estimator/identify/solve/noise_compensation.h"
 #include "estimator/identify/solve/story_solver.h"
 #include "estimator/identify/solve/uncertainty.h"
@@ -42,25 +43,28 @@ class WindowSolution {
   /// window's values do not depend on how often windows are requested.
   void solve(const WindowParts& sums, const RowFilter& rows, const Trust& trust, bool closes_block);
 
-  /// Begins a pass of standard errors, spread over instants (BatchMeans). fit: the solution that
-  /// fits BatchMeans::kBlocks blocks, this one or another. Does nothing until both have solved
-  /// these rows: the block that fills a window for the first time closes earlier, and errors would
-  /// be zero.
+  /// Begins a pass of standard errors, spread over instants (BatchMeans, InfluentialPart). blocks:
+  /// length of the window in blocks of `all`. fit: the solution that fits BatchMeans::kBlocks
+  /// blocks, this one or another. Does nothing until both have solved these rows: the block that
+  /// fills a window for the first time closes earlier, and errors would be zero.
   template <typename Sums>
-  void begin_errors(const Sums& all, const WindowSolution& fit) {
+  void begin_errors(const Sums& all, int blocks, const WindowSolution& fit) {
     if (fresh_ || fit.fresh_) return;
     const BatchMeans::Fit of{&fit.solver_.solution(), &fit.solver_.information()};
+    influential_.begin(all, blocks, solver_, prior_, centre_, noise_);
     errors_.begin(all, solver_, of, prior_, doubt_, noise_, noise_scale_);
   }
   bool advance_errors(int steps);
   /// Abandons a pass in progress, because the next solution comes from other rows. Errors remain.
   void retuned() {
     errors_.cancel();
+    influential_.cancel();
     fresh_ = true;
   }
   int error_steps() const { return errors_.steps(); }
-  const std::vector<double>& std_error() const { return errors_.std_error(); }
-  void rescale(int unknown, double factor) { errors_.rescale(unknown, factor); }
+  const std::vector<double>& std_error() const { return std_error_; }
+  /// Multiplies the results of an unknown by `factor`, because its theta0 has changed.
+  void rescale(int unknown, double factor);
   /// Returns ModelMisfit::misfit() of the last closed block; NaN if the window does not show the
   /// unknown.
   double misfit(int unknown) const;
@@ -104,6 +108,14 @@ class WindowSolution {
     a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, noise_known_, fresh_,
       overcompensated_);
     a.finite(residual_energy_, noise_scale_, noise_level_);
+    if (a.since(18)) {
+      influential_.archive(a, rows, sums);
+      a(std_error_, checked_);
+    } else {
+      influential_.restart(solver_.solution());
+      std_error_ = errors_.std_error();
+      checked_ = solver_.solution();
+    }
   }
 
  private:
@@ -118,6 +130,7 @@ class WindowSolution {
   bool rowless(int floor) const;
   void see(const std::vector<std::uint8_t>& known);
   bool published(int unknown) const;
+  double present_error(int unknown) const;
   /// Returns the noise level that motion must exceed, over the level that the tuning assumes.
   double gate_level() const;
   bool looks_symmetric(const WindowEstimate& estimate) const;
@@ -131,6 +144,9 @@ class WindowSolution {
   double warm_share_;
   StorySolver solver_;
   BatchMeans errors_;
+  InfluentialPart influential_;
+  std::vector<double> std_error_;     ///< of the last pass, internal order, relative to theta0
+  std::vector<double> checked_;       ///< the solution that std_error_ belongs to
   ModelMisfit misfit_;                ///< misfit of the last closed block
   std::vector<double> misfit_error_;  ///< internal order, relative to theta0
   std::vector<double> prior_;

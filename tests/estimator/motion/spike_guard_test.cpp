@@ -30,8 +30,10 @@ struct Guarded {
   std::vector<std::int64_t> counted;
 };
 Guarded run(const std::function<double(int t, int axis)>& added, int axes = kAxes,
-            double resolution = 0) {
-  AxisGuard guard(std::vector<AxisGuard::Axis>(static_cast<std::size_t>(axes)), kRate_hz);
+            double resolution = 0, const std::vector<int>& groups = {}) {
+  std::vector<AxisGuard::Axis> guarded(static_cast<std::size_t>(axes));
+  for (std::size_t a = 0; a < groups.size(); ++a) guarded[a].group = groups[a];
+  AxisGuard guard(guarded, kRate_hz);
   Guarded out;
   std::mt19937 random(1);
   const auto take = [&](const SampleSet* set) {
@@ -165,6 +167,17 @@ TEST(SampleBound, AppliesToScaledValuesAboutTheOffset) {
   axis.range = 1000;
   EXPECT_TRUE(sample_bound(axis).holds(-1000));
   EXPECT_FALSE(sample_bound(axis).holds(1300));
+}
+
+TEST(SpikeGuardGroups, AnAxisOfTheSameNodeIsNoWitness) {
+  const auto both = [](int t, int axis) { return t == kAt && (axis == 1 || axis == 2) ? 20.0 : 0; };
+  EXPECT_TRUE(run(both, kAxes, 0, {0, 1, 2, 3}).absurd.empty());
+  EXPECT_EQ(run(both, kAxes, 0, {0, 1, 1, 3}).absurd, (Places{{kAt, 1}, {kAt, 2}}));
+}
+
+TEST(SpikeGuardGroups, InOneGroupAxesAreTheOnlyWitnesses) {
+  const auto both = [](int t, int axis) { return t == kAt && (axis == 1 || axis == 2) ? 20.0 : 0; };
+  EXPECT_TRUE(run(both, kAxes, 0, {7, 7, 7, 7}).absurd.empty());
 }
 
 }  // namespace spike_guard_test
