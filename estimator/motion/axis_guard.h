@@ -17,10 +17,10 @@ namespace framewatch::estimator {
 /// A sample is doubtful when it lies kFar mean steps (changes per sample) beyond the newest
 /// extremes of its axis, by a step that is kAbrupt times the one before. It is sound in two cases.
 /// First, within kLookAhead instants another axis makes a step of kStirred times its own mean step,
-/// as in an onset, a tap or an impact. An axis of the same group is not a witness unless all axes are
-/// in one group, because axes of one message, node or cable fail together. Second, the axis rings:
-/// the following samples are smaller, or return and move out again, none of them by more than
-/// kMaxAlone.
+/// as in an onset, a tap or an impact. An axis of the same group is not a witness unless all axes
+/// are in one group, because axes of one message, node or cable fail together. Second, the axis
+/// rings: the following samples are smaller, or return and move out again, none of them by more
+/// than kMaxAlone.
 ///
 /// Otherwise the sample is absurd, and so are the following ones until the axis returns, for at
 /// most kLongest_s; what lasts longer is a new bias. No sample is doubtful before the axis has
