@@ -57,7 +57,7 @@ const Description* find(std::string_view name) {
 }
 
 const std::string kMagic = "framewatch state\n";
-constexpr std::int32_t kFormat = 17;  ///< increase it whenever archive() of any class changes
+constexpr std::int32_t kFormat = 18;  ///< increase it whenever archive() of any class changes
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMaxBytes = std::int64_t{1} << 30;
 constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head; a real one has about ten
