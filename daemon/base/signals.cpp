@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/base/signals.h"
 
+#include <atomic>
 #include <csignal>
 
 namespace framewatch::daemon {
@@ -12,7 +13,8 @@ extern "C" void request_reload(int) {
   reload_signalled = 1;
 }
 
-volatile std::sig_atomic_t stop_signalled = 0;
+std::atomic<int> stop_signalled{0};  // a StopLimit reads it in another thread
+static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void request_stop(int) {
   stop_signalled = 1;

@@ -2,6 +2,7 @@
 #include "daemon/base/sqlite_file.h"
 
 #include <sqlite3.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,6 +15,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/clocks.h"
 #include "daemon/base/utc_time.h"
 #include "drivers/files/input_file.h"
 
@@ -55,6 +57,25 @@ void remove_least(const fs::path& database) {
 }
 
 constexpr int kPatience_ms = 5000;  // while another process writes
+constexpr int kOperationsBetweenLooks = 100'000;
+
+/// Limits of one connection. A file of framewatch stays far below them.
+constexpr std::pair<int, int> kLimits[] = {
+    {SQLITE_LIMIT_LENGTH, 1 << 28},  // bytes of a row
+    {SQLITE_LIMIT_SQL_LENGTH, 1 << 16}, {SQLITE_LIMIT_COLUMN, 64},
+    {SQLITE_LIMIT_EXPR_DEPTH, 64},      {SQLITE_LIMIT_COMPOUND_SELECT, 8},
+    {SQLITE_LIMIT_VDBE_OP, 25'000},     {SQLITE_LIMIT_ATTACHED, 0},
+    {SQLITE_LIMIT_TRIGGER_DEPTH, 1},
+};
+
+/// Interrupts a statement whose time is over.
+int is_too_long(void* failure) {
+  return steady_clock_us() > static_cast<const SqliteFailure*>(failure)->until_us;
+}
+
+void allow_time(SqliteFailure& failure) {
+  failure.until_us = steady_clock_us() + failure.longest_us;
+}
 
 bool means_corrupt(int result) {
   const int primary = result & 0xff;
@@ -66,19 +87,28 @@ bool means_corrupt(int result) {
 void set_aside_database(const std::string& database, std::int64_t now_us, const std::string& reason,
                         SetAside& out) {
   const std::string name = name_aside(database, now_us);
+  bool renamed = false;
   out.problem.clear();
   // Rename the log first: SQLite would apply the old log to a new database.
   for (const char* beside : kOfDatabase) {
-    if (std::rename((database + beside).c_str(), (name + beside).c_str()) == 0) continue;
+    if (std::rename((database + beside).c_str(), (name + beside).c_str()) == 0) {
+      renamed = *beside == '\0';
+      continue;
+    }
     if (errno == ENOENT) continue;
-    out.problem = fmt::format("{} is corrupt and cannot be set aside: {}", database + beside,
-                              std::strerror(errno));
+    out.problem = fmt::format("{} is unusable ({}) and cannot be set aside: {}", database + beside,
+                              reason, std::strerror(errno));
     return;
   }
   ++out.count;
-  out.path = name;
+  out.path = renamed ? name : "";
   out.reason = reason;
   remove_least(database);
+}
+
+std::string SetAside::words() const {
+  return fmt::format("{}: {}started a new one", reason,
+                     path.empty() ? "" : fmt::format("renamed it {} and ", path));
 }
 
 void SqliteStatement::finalize(sqlite3_stmt* statement) {
@@ -110,6 +140,7 @@ SqliteStatement& SqliteStatement::bind(int at, std::span<const double> values) {
 
 int SqliteStatement::step() {
   if (failure_->any) return SQLITE_ERROR;
+  allow_time(*failure_);
   const int result = statement_ ? sqlite3_step(statement_.get()) : SQLITE_ERROR;
   if (result != SQLITE_ROW && result != SQLITE_DONE) {
     failure_->any = true;
@@ -193,33 +224,58 @@ bool SqliteFile::open_new(const std::string& path) {
 
 bool SqliteFile::open_to_write(const std::string& path, const std::string& settings) {
   if (!is_file(path)) return false;
-  if (open_with(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) && execute(settings)) return true;
+  if (open_with(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) && execute(settings)) {
+    identity_ = identity_of(path);
+    return true;
+  }
   file_.reset();
   return false;
 }
 
 bool SqliteFile::open_to_read(const std::string& path) {
-  return is_file(path) && open_with(path, SQLITE_OPEN_READONLY);
+  if (!is_file(path) || !open_with(path, SQLITE_OPEN_READONLY)) return false;
+  identity_ = identity_of(path);
+  return true;
+}
+
+SqliteFile::Identity SqliteFile::identity_of(const std::string& path) {
+  struct ::stat found {};
+  if (::stat(path.c_str(), &found) != 0) return std::nullopt;
+  return std::pair<std::uint64_t, std::uint64_t>(found.st_dev, found.st_ino);
+}
+
+bool SqliteFile::in_place() const {
+  return identity_ == identity_of(path_);
 }
 
 bool SqliteFile::open_with(const std::string& path, int flags) {
   sqlite3* file = nullptr;
   const int opened = sqlite3_open_v2(path.c_str(), &file, flags, nullptr);
   file_.reset(file);
-  failure_ = {};
+  failure_.forget();
   error_.clear();
   if (opened != SQLITE_OK) return fail();
   sqlite3_busy_timeout(file, kPatience_ms);
+  // The file may be anybody's.
+  sqlite3_db_config(file, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_db_config(file, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(file, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+  sqlite3_db_config(file, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  for (const auto& [limit, value] : kLimits) sqlite3_limit(file, limit, value);
+  sqlite3_progress_handler(file, kOperationsBetweenLooks, &is_too_long, &failure_);
+  path_ = path;
   return true;
 }
 
 bool SqliteFile::execute(const std::string& sql) {
+  allow_time(failure_);
   return (file_ &&
           sqlite3_exec(file_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK) ||
          fail();
 }
 
 SqliteStatement SqliteFile::prepare(std::string_view sql) {
+  allow_time(failure_);
   sqlite3_stmt* statement = nullptr;
   if (sqlite3_prepare_v2(file_.get(), sql.data(), static_cast<int>(sql.size()), &statement,
                          nullptr) != SQLITE_OK)

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +24,14 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kWrite{250}, kSync{1000};
 constexpr std::size_t kWriteAtOnce = std::size_t{1}
                                      << 20;  // more is written without waiting for kWrite
+
+/// Returns true if a path names an open file.
+bool names(const std::string& path, int file) {
+  struct stat named {
+  }, open{};
+  return ::stat(path.c_str(), &named) == 0 && ::fstat(file, &open) == 0 &&
+         named.st_ino == open.st_ino && named.st_dev == open.st_dev;
+}
 
 /// Forces a file onto the disk, and the name `fresh` unless it is empty. Returns what went wrong.
 std::string force(int file, const std::string& fresh) {
@@ -108,6 +117,11 @@ std::string DurableFile::trouble() const {
   return trouble_;
 }
 
+bool DurableFile::is_lost() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return lost_;
+}
+
 bool DurableFile::write_some() {
   if (file_ < 0 && !writing_.empty()) {
     std::string why;
@@ -166,6 +180,10 @@ void DurableFile::work() {
       forced();
     if (!last && (forcing.valid() || Clock::now() < next_sync)) continue;
     next_sync = Clock::now() + kSync;
+    if (file_ >= 0 && !names(path_ + ".partial", file_)) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      lost_ = true;
+    }
     if (!dirty || file_ < 0) continue;
     dirty = false;
     // Deferred, so run in this thread, when the system has no thread to give.

@@ -47,6 +47,8 @@ class DurableFile {
   Counters counters() const;
   /// Returns why the queue cannot be written now; empty when it can.
   std::string trouble() const;
+  /// Returns true if somebody has moved, removed or replaced the file, as seen once a second.
+  bool is_lost() const;
   /// Writes the rest, trying for at most `patience` while the disk refuses, and renames the file.
   /// Returns false and sets `error` when bytes are missing: the file then stays PATH.partial.
   /// Creates no file when nothing was appended.
@@ -79,6 +81,7 @@ class DurableFile {
   std::size_t waiting_ = 0;  ///< bytes of writing_ that are not yet written
   Counters counters_;
   std::string trouble_;
+  bool lost_ = false;
   bool closing_ = false;
   std::chrono::steady_clock::time_point give_up_{};
 };

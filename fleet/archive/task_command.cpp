@@ -25,6 +25,7 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/estimation.h"
+#include "daemon/monitor/history/history_schema.h"
 #include "daemon/tools/replay/first_passes.h"
 #include "daemon/tools/replay/history_output.h"
 #include "daemon/tools/replay/replay_survey.h"
@@ -112,7 +113,9 @@ constexpr const char* kMeans =
 /// the database cannot be read.
 nlohmann::ordered_json parameter_means(const std::string& database) {
   daemon::SqliteFile file;
-  if (!file.open_to_read(database)) return nullptr;
+  if (!file.open_to_read(database) ||
+      !daemon::version_problem(file, daemon::history_schema()).empty())
+    return nullptr;
   daemon::SqliteStatement all = file.prepare(kMeans);
   nlohmann::ordered_json out = nlohmann::ordered_json::object();
   while (all.row())

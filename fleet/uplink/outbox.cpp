@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fleet/uplink/outbox.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -21,6 +19,7 @@
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_schema.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -158,17 +157,13 @@ std::vector<TimeRange> united(std::vector<TimeRange> ranges) {
 /// Opens the database again if it was replaced by another file.
 std::string Outbox::open() {
   const std::string path = daemon::summary_file(directory_);
-  struct ::stat now {};
-  if (::stat(path.c_str(), &now) != 0) {
+  if (drivers::is_absent(path)) {
     file_.close();
     return "there is no history yet";
   }
-  if (file_.is_open() && !file_.failed() && now.st_dev == device_ && now.st_ino == number_)
-    return {};
+  if (file_.is_open() && !file_.failed() && file_.in_place()) return {};
   version_ = -1;
   if (!file_.open_to_read(path)) return file_.error();
-  device_ = now.st_dev;
-  number_ = now.st_ino;
   std::string problem = daemon::version_problem(file_, daemon::history_schema());
   if (!problem.empty()) file_.close();
   return problem;

@@ -57,7 +57,6 @@ class Outbox {
   std::string directory_;
   std::vector<std::int64_t> summary_s_;
   daemon::SqliteFile file_;
-  std::uint64_t device_ = 0, number_ = 0;  ///< device and inode of the open file
   std::int64_t version_ = -1;
   std::optional<std::int64_t> newest_us_;
 };

@@ -73,7 +73,10 @@ std::string SentStore::open(const std::string& directory, std::int64_t now_us) {
     if (problem.empty()) problem = daemon::upgrade(file_, kSteps);
     if (problem.empty()) {
       daemon::SqliteStatement sound = file_.prepare("PRAGMA quick_check(1)");
-      if (!sound.row() || sound.text(0) != "ok") problem = "damaged";
+      if (!sound.row())
+        problem = file_.error();
+      else if (sound.text(0) != "ok")
+        problem = "damaged";
     }
     if (problem.empty()) return {};
     const bool damaged = file_.corrupt() || problem == "damaged";

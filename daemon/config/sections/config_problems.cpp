@@ -2,6 +2,7 @@
 #include "daemon/config/sections/config_problems.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include <fmt/core.h>
@@ -44,9 +45,13 @@ std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextPr
 }
 
 void print_problems(const std::vector<ConfigProblem>& problems) {
-  for (const ConfigProblem& p : problems)
+  constexpr std::size_t kPrinted = 20;
+  const std::size_t printed = std::min(problems.size(), kPrinted);
+  for (const ConfigProblem& p : std::span(problems).first(printed))
     fmt::print(stderr, "{} {}\n", toned(Tone::bad, printable(p.where) + ":", stderr),
                printable_lines(p.message));
+  if (problems.size() > printed)
+    fmt::print(stderr, "and {} more problems\n", problems.size() - printed);
 }
 
 void log_doubts(const std::vector<ConfigProblem>& doubts) {

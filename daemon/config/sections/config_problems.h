@@ -17,7 +17,7 @@ struct ConfigProblem {
 /// Returns the problems of a text as problems of its file, ordered by place.
 std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextProblem> problems);
 
-/// Prints each problem as a line on stderr.
+/// Prints the first 20 problems, each as a line on stderr, and the number of the others.
 void print_problems(const std::vector<ConfigProblem>& problems);
 /// Logs warnings about values that are allowed but implausible.
 void log_doubts(const std::vector<ConfigProblem>& doubts);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/base/usual_time.h"
 #include "daemon/monitor/estimation/estimation_events.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
@@ -85,6 +86,7 @@ Estimation::Estimation(const Config& config, MessageSink sink, EstimationListene
       can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
       can_events_(config.can),
       channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s),
+      stamp_events_(config.pipeline.axes, config.pipeline.options),
       newest_us_(config.pipeline.axes.size(), INT64_MIN) {
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
@@ -195,7 +197,16 @@ drivers::IntakeResult Estimation::message(const std::string& channel, const void
                                           std::int64_t received_us) {
   if (config_.watch && channel == config_.watch->temperature_channel)
     return temperature(data, size);
-  return intake_.message(channel, data, size, sender, received_us);
+  arrival_us_ = received_us;
+  const drivers::IntakeResult result = intake_.message(channel, data, size, sender, received_us);
+  arrival_us_ = 0;
+  return result;
+}
+
+void Estimation::frame(int bus, const drivers::CanFrame& frame) {
+  arrival_us_ = frame.stamp_us;
+  can_.frame(bus, frame);
+  arrival_us_ = 0;
 }
 
 drivers::IntakeResult Estimation::temperature(const void* data, std::size_t size) {
@@ -236,6 +247,7 @@ void Estimation::sample(const estimator::AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
   listener_->on_sample(sample);
   channel_events_.sample(sample);
+  stamp_events_.sample(sample);
   if (const auto axis = static_cast<std::size_t>(sample.axis); axis < newest_us_.size())
     newest_us_[axis] = to_microseconds(sample.time);
   take(pipeline_.push(sample));
@@ -244,8 +256,7 @@ void Estimation::sample(const estimator::AccelSample& sample) {
 void Estimation::came_up(bool raw) {
   intake_.came_up();
   if (!shaking_) return;
-  const std::int64_t newest_us = *std::max_element(newest_us_.begin(), newest_us_.end());
-  shaking_->came_up(estimator::from_microseconds(newest_us), raw);
+  shaking_->came_up(estimator::from_microseconds(usual_time_us(newest_us_, INT64_MIN)), raw);
 }
 
 void Estimation::finish() {
@@ -267,6 +278,13 @@ void Estimation::publish_state() {
   for (const event_t& event : std::exchange(to_withdraw_, {})) announce(withdrawn(event));
   const std::vector<estimator::AxisCounters> axes = axis_counters();
   for (const event_t& event : channel_events_.update(axes, seconds_.newest_us())) announce(event);
+  std::vector<std::int64_t> lost;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const drivers::HeardNode* node = intake_.node_of(i);
+    lost.push_back(node == nullptr ? can_.lost_of(i) : node->counter.lost);
+  }
+  for (const event_t& event : stamp_events_.update(lost, seconds_.newest_us())) announce(event);
+  if (const auto event = clock_events_.update(seconds_.newest_us(), arrival_us_)) announce(*event);
   for (event_t event : std::vector<event_t>(raised_.all())) {
     if (!green_and_past(event, seconds_.newest_us())) continue;
     event.state = event_state::cleared;
@@ -295,7 +313,7 @@ void Estimation::publish_state() {
     const estimator::AxisCounters& axis = axes[i];
     const drivers::HeardNode* node = intake_.node_of(i);
     status.received.push_back(axis.received);
-    status.lost.push_back(node == nullptr ? can_.lost_of(i) : node->counter.lost);
+    status.lost.push_back(lost[i]);
     status.late.push_back(axis.late);
     status.repaired.push_back(axis.repaired);
     status.rejected.push_back(axis.rejected + (node == nullptr ? 0 : node->left_out()));

@@ -13,6 +13,7 @@
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/input_events.h"
 #include "daemon/monitor/estimation/publisher.h"
+#include "daemon/monitor/estimation/stamp_events.h"
 #include "daemon/monitor/event_report/event_report.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "drivers/can/can_intake.h"
@@ -106,7 +107,7 @@ class Estimation {
   /// Tells that the messages of another log follow.
   void log_begins() { intake_.log_begins(); }
   /// Takes one CAN frame of the bus with this index in the configuration.
-  void frame(int bus, const drivers::CanFrame& frame) { can_.frame(bus, frame); }
+  void frame(int bus, const drivers::CanFrame& frame);
   /// Takes a state of a CAN bus that no frame reports.
   void notice(const drivers::CanNotice& notice);
   /// Takes one value from a file that has channel names instead of messages.
@@ -198,6 +199,9 @@ class Estimation {
   drivers::CanIntake can_;
   CanEvents can_events_;
   ChannelEvents channel_events_;
+  StampEvents stamp_events_;
+  ClockEvents clock_events_;
+  std::int64_t arrival_us_ = 0;  ///< receiver's clock, of the message that is taken; 0: unknown
   SensorSeconds seconds_;
   std::vector<std::int64_t> newest_us_;
   LiveState live_;

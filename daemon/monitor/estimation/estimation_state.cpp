@@ -40,7 +40,9 @@ std::vector<std::string> kinds_of(const std::string& section) {
     return {"two_senders", "sequence_leap", "duplicates", "losses", "channel_table"};
   if (section == "can")
     return {"bus_off", "interface_gone", "emergency", "sequence_leap", "duplicates", "losses"};
-  if (section == "window") return {"absurd_samples", "channel_silent", "channel_stuck"};
+  if (section == "counts") return {"clock_step"};
+  if (section == "window")
+    return {"absurd_samples", "channel_silent", "channel_stuck", "channel_rate", "channel_clock"};
   if (section == "watch") return {"stiffness_change"};
   if (section == "gap") return {"gap"};
   return {};
@@ -54,6 +56,7 @@ template <typename Visit>
 void Estimation::each_section(const Visit& visit) {
   visit("counts", [this](auto& a) {
     a(seconds_);
+    if (a.since(18)) a(clock_events_);
     for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMaxCount);
   });
   visit("events", [this](auto& a) { a(raised_); });
@@ -66,7 +69,9 @@ void Estimation::each_section(const Visit& visit) {
   // The events of channels compare the pipeline's counters with earlier ones, so both are one
   // section.
   visit("window", [this](auto& a) {
-    a(channel_events_, newest_us_);
+    a(channel_events_);
+    if (a.since(18)) a(stamp_events_);
+    a(newest_us_);
     archive_pipeline(a, pipeline_);
   });
   if (watch_) {
@@ -156,6 +161,8 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   copy(before.can_, can_);
   copy(before.can_events_, can_events_);
   copy(before.channel_events_, channel_events_);
+  copy(before.stamp_events_, stamp_events_);
+  copy(before.clock_events_, clock_events_);
   copy(before.raised_, raised_);
   windows_ = before.windows_;
   absurd_temperatures_ = before.absurd_temperatures_;

@@ -90,8 +90,7 @@ std::optional<event_t> HistoryMonitor::new_database(const SetAside& set_aside,
   database_.value = static_cast<double>(set_aside.count);
   database_.unit = "databases";
   database_.message = fmt::format(
-      "the database was corrupt ({}): renamed it {} and started a new one. Check the disk",
-      set_aside.reason, set_aside.path);
+      "the database is unusable: {}. Check the disk, and who else writes there", set_aside.words());
   return database_;
 }
 

@@ -51,8 +51,9 @@ class History {
 };
 
 /// Raises an event when samples or summaries cannot be written to the disk, and clears it, with the
-/// number of losses, when writing works again. Raises another one when a corrupt database was set
-/// aside; it stays until the program ends, because the operator has to look at it.
+/// number of losses, when writing works again. Raises another one when a corrupt, foreign or
+/// removed database was set aside; it stays until the program ends, because the operator has to
+/// look at it.
 class HistoryMonitor {
  public:
   /// Returns the events since the last call. `now_us`: host clock.
@@ -85,6 +86,8 @@ class HistoryReport {
 
   /// Returns nullptr if no history is configured.
   History* history() { return history_ ? &*history_ : nullptr; }
+  /// Writes everything to the disk and ends the history.
+  void close() { history_.reset(); }
   /// Returns its raised events.
   RaisedEvents& raised() { return raised_; }
   /// Stores what is due and publishes. Call it several times a second; `now_us`: host clock.

@@ -22,6 +22,7 @@
 #include "daemon/base/process.h"
 #include "daemon/base/sqlite_file.h"
 #include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/history_schema.h"
 #include "drivers/files/caught.h"
 #include "drivers/files/descriptor.h"
 #include "drivers/files/input_file.h"
@@ -98,7 +99,8 @@ std::optional<std::vector<TimeSpan>> spans_of_events(const HistorySettings& sett
   std::vector<TimeSpan> out;
   if (drivers::is_absent(path)) return out;
   SqliteFile file;
-  if (!file.open_to_read(path)) return std::nullopt;
+  if (!file.open_to_read(path) || !version_problem(file, history_schema()).empty())
+    return std::nullopt;
   SqliteStatement events = file.prepare(
       "SELECT min(since_us, time_us), time_us FROM event"
       " WHERE state = 1 AND kind IN ('stiffness_change', 'gap')");
@@ -212,6 +214,9 @@ HistoryKeeper::~HistoryKeeper() {
     stop_ = true;
   }
   wake_.notify_one();
+  // The end should not wait until the processor is idle; not every system permits this.
+  const sched_param usual{};
+  ::pthread_setschedparam(thread_.native_handle(), SCHED_OTHER, &usual);
   thread_.join();
   close_retired();
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/history_schema.h"
 
+#include <map>
+
 #include <fmt/core.h>
 
 namespace framewatch::daemon {
@@ -107,6 +109,36 @@ std::int64_t version_of(SqliteFile& file) {
   return version.row() ? version.integer(0) : -1;
 }
 
+/// Returns the SQL of every part of a database by its kind and name, such as "table event". Leaves
+/// out the tables of ANALYZE.
+std::map<std::string, std::string> parts_of(SqliteFile& file) {
+  SqliteStatement all = file.prepare(
+      "SELECT type || ' ' || name, sql FROM sqlite_master WHERE sql IS NOT NULL"
+      " AND NOT (type = 'table' AND name IN ('sqlite_stat1', 'sqlite_stat4'))");
+  std::map<std::string, std::string> out;
+  while (all.row()) out[all.text(0)] = all.text(1);
+  return out;
+}
+
+/// Returns an empty string if the database has the parts that `steps` make. Otherwise names the
+/// first part that differs, and condemns the file.
+std::string foreign_part(SqliteFile& file, std::span<const char* const> steps) {
+  SqliteFile ours;
+  if (!ours.open(":memory:")) return ours.error();
+  for (const char* step : steps)
+    if (!ours.execute(step)) return ours.error();
+  const std::map<std::string, std::string> wanted = parts_of(ours), found = parts_of(file);
+  if (file.failed()) return file.error();
+  std::string out;
+  for (const auto& [name, sql] : found)
+    if (const auto at = wanted.find(name); out.empty() && (at == wanted.end() || at->second != sql))
+      out = at == wanted.end() ? name + " does not belong there" : name + " is not framewatch's";
+  for (const auto& [name, sql] : wanted)
+    if (out.empty() && !found.contains(name)) out = name + " is missing";
+  if (!out.empty()) file.condemn();
+  return out.empty() ? "" : "it is another program's: " + out;
+}
+
 }  // namespace
 
 std::span<const char* const> history_schema() {
@@ -117,6 +149,8 @@ std::string upgrade(SqliteFile& file, std::span<const char* const> steps) {
   const std::int64_t version = version_of(file);
   const auto wanted = static_cast<std::int64_t>(steps.size());
   if (version < 0 || version > wanted) return version_problem(file, steps);
+  const auto known = steps.first(static_cast<std::size_t>(version));
+  if (std::string foreign = foreign_part(file, known); !foreign.empty()) return foreign;
   for (std::int64_t v = version; v < wanted; ++v) {
     const bool done = file.transaction([&] {
       return file.execute(steps[static_cast<std::size_t>(v)]) &&
@@ -130,7 +164,7 @@ std::string upgrade(SqliteFile& file, std::span<const char* const> steps) {
 std::string version_problem(SqliteFile& file, std::span<const char* const> steps) {
   const std::int64_t version = version_of(file);
   const auto wanted = static_cast<std::int64_t>(steps.size());
-  if (version == wanted) return {};
+  if (version == wanted) return foreign_part(file, steps);
   if (version < 0) return file.error();
   if (version > wanted)
     return fmt::format("a newer framewatch wrote it (schema {}, this one knows {})", version,

@@ -13,11 +13,13 @@ namespace framewatch::daemon {
 std::span<const char* const> history_schema();
 
 /// Upgrades a database to the version after the last of `steps`, each step in one transaction.
-/// Returns an empty string, or the reason of a failure: a newer program wrote it, or a step failed.
-/// After a failure that step has changed nothing.
+/// Returns an empty string, or the reason of a failure: a newer program wrote it, a step failed, or
+/// the database has other tables, indexes, views or triggers than the steps of its version make.
+/// That last one condemns the file. After a failure that step has changed nothing.
 std::string upgrade(SqliteFile& file, std::span<const char* const> steps);
 
-/// Returns why a database of another version cannot be read; empty if it can.
+/// Returns why a database of another version, or with other parts than upgrade() allows, cannot be
+/// read; empty if it can.
 std::string version_problem(SqliteFile& file, std::span<const char* const> steps);
 
 }  // namespace framewatch::daemon

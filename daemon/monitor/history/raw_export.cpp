@@ -17,6 +17,7 @@
 #include "daemon/base/progress.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/config/channel_addresses.h"
+#include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/history/raw_history_reader.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/lcm/accel_codec.h"
@@ -97,11 +98,9 @@ class LogExport : public RawExport {
     if (!open_) return true;
     drivers::SensorNodeSample sample = *std::exchange(open_, std::nullopt);
     const std::int64_t time_us = to_microseconds(sample.time);
-    if (time_us >= next_table_us_ || time_us < next_table_us_ - 2 * kSecond_us) {
-      next_table_us_ = time_us + kSecond_us;
+    if (seconds_.passed(time_us))
       for (const drivers::Message& m : tables_.tables(time_us))
         if (!log_.write(time_us, m.channel, m.bytes.data(), m.bytes.size())) return false;
-    }
     auto [at, first] = nodes_.try_emplace({stream_, sample.node}, Node{time_us, 0});
     Node& node = at->second;
     if (!first) {
@@ -124,7 +123,7 @@ class LogExport : public RawExport {
   std::map<std::pair<std::string, std::int32_t>, Node> nodes_;
   std::optional<drivers::SensorNodeSample> open_;
   std::string stream_;
-  std::int64_t next_table_us_ = INT64_MIN / 2;
+  SensorSeconds seconds_;
 };
 
 /// Writes a record, whose time zero is its first sample.

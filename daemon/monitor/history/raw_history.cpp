@@ -40,9 +40,21 @@ void RawHistory::message(const std::string& channel, std::int64_t time_us,
 }
 
 void RawHistory::tick(std::int64_t now_us) {
+  ticked_us_ = now_us;
+  if (log_ && log_->is_lost()) {
+    end_block();
+    rotate();
+    lost_us_ = now_us;
+  }
   if (block_.empty()) return;
   if (!block_since_us_) block_since_us_ = now_us;
   if (now_us - *block_since_us_ >= kBlock_us) end_block();
+}
+
+std::string RawHistory::trouble() const {
+  if (lost_us_ && ticked_us_ - *lost_us_ < kTold_us)
+    return "its log was moved, removed or replaced; a new one has begun";
+  return log_ ? log_->trouble() : "";
 }
 
 void RawHistory::finish() {

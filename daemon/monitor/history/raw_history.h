@@ -20,6 +20,7 @@ namespace framewatch::daemon {
 class RawHistory {
  public:
   static constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
+  static constexpr std::int64_t kTold_us = 60'000'000;
   /// Takes a log to close, which may take long.
   using Retire = std::function<void(std::unique_ptr<drivers::DurableFile>)>;
 
@@ -44,7 +45,9 @@ class RawHistory {
   void finish();
 
   Counters counters() const;
-  std::string trouble() const { return log_ ? log_->trouble() : ""; }
+  /// Returns why samples cannot be written. A log that somebody moved or removed is named for
+  /// kTold_us after the next one has begun.
+  std::string trouble() const;
   std::int64_t newest_us() const { return seconds_.newest_us(); }
 
  private:
@@ -63,6 +66,8 @@ class RawHistory {
   std::unique_ptr<drivers::DurableFile> log_;
   std::int64_t log_slot_ = 0, log_bytes_ = 0, log_events_ = 0;
   std::optional<std::int64_t> block_since_us_;  ///< when tick() first saw it
+  std::optional<std::int64_t> lost_us_;         ///< when tick() last saw a lost log
+  std::int64_t ticked_us_ = 0;
   std::int64_t samples_ = 0, dropped_ = 0, retired_bytes_ = 0;
   std::string event_;
 };

@@ -67,6 +67,8 @@ void SummaryHistory::work(const std::stop_token& stop) {
         if (taken.period) next_commit_ = std::min(next_commit_, Clock::now());
         if (taken.news) next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
       }
+      if (store_.is_replaced() && begin_anew("it was removed or replaced while in use", {}))
+        next_commit_ = Clock::now();
       const bool due = Clock::now() >= next_commit_;
       // Ends the period even if the sensors fall silent in the middle of it.
       if ((last || (due && waiting().empty())) && intake_.end_period())
@@ -97,19 +99,23 @@ std::string SummaryHistory::store_waiting() {
   return waiting().empty() ? "" : store_.add(waiting());
 }
 
-/// Sets the corrupt database aside. Returns false if that fails.
-bool SummaryHistory::begin_anew(const std::string& reason) {
+/// Returns the events that the database has, as far as they can be read.
+std::vector<event_t> SummaryHistory::readable_events() const {
+  SummaryQuery old;
+  if (!old.open(config_.history->directory).empty()) return {};
+  return old.events(-kEver_us, kEver_us, kMaxEvents);
+}
+
+/// Sets an unusable database aside; the next one begins with the events of `readable`. Returns
+/// false if that fails.
+bool SummaryHistory::begin_anew(const std::string& reason, const std::vector<event_t>& readable) {
   const std::string database = summary_file(config_.history->directory);
-  store_.close();
-  std::vector<event_t> readable;
-  if (SummaryQuery old; old.open(config_.history->directory).empty())
-    readable = old.events(-kEver_us, kEver_us, kMaxEvents);
   SetAside aside = counters().set_aside;
   set_aside_database(database, host_clock_us(), reason, aside);
+  store_.close();  // SQLite removes the log of that name, which may by now be another file's
   if (aside.problem.empty()) {
-    log(LogLevel::error, fmt::format("history: {} is corrupt ({}): renamed it {} and started a new "
-                                     "one with {} of its events. Check the disk",
-                                     database, reason, aside.path, readable.size()));
+    log(LogLevel::error, fmt::format("history: {}: {} with {} of its events", database,
+                                     aside.words(), readable.size()));
     waiting().events.insert(waiting().events.begin(), readable.begin(), readable.end());
   }
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -122,7 +128,8 @@ void SummaryHistory::commit() {
   next_commit_ = Clock::now() + period + kAgain;  // unless a period ends before
   std::string problem = store_waiting();
   if (store_.corrupt())
-    problem = begin_anew(problem) ? store_waiting() : counters().set_aside.problem;
+    problem =
+        begin_anew(problem, readable_events()) ? store_waiting() : counters().set_aside.problem;
   if (waiting().empty() && problem.empty()) {
     const std::lock_guard<std::mutex> lock(mutex_);
     counters_.trouble.clear();

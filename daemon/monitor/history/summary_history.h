@@ -21,8 +21,9 @@ namespace framewatch::daemon {
 
 /// Stores summaries, channels and events of a running estimation in the database, from a thread.
 /// message() never waits. While the database cannot be written, a limited number of periods waits
-/// and is tried again every second. A corrupt database is set aside; a new one starts with the
-/// events that could still be read.
+/// and is tried again every second. A database that is corrupt or another program's, or that
+/// somebody has moved, removed or replaced, is set aside; a new one starts with the events that
+/// could still be read.
 class SummaryHistory {
  public:
   static constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
@@ -55,7 +56,8 @@ class SummaryHistory {
   void guarded(std::size_t messages, const std::function<void()>& round);
   void commit();
   std::string store_waiting();
-  bool begin_anew(const std::string& reason);
+  std::vector<event_t> readable_events() const;
+  bool begin_anew(const std::string& reason, const std::vector<event_t>& readable);
   void bound();
   SummaryBatch& waiting() { return intake_.batch(); }
 

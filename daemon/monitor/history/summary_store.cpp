@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -40,9 +41,15 @@ constexpr const char* kPutSummary =
 
 }  // namespace
 
-/// Takes the lock unless this program has it. Returns an empty string, or the reason of a failure.
+/// Takes the lock unless this program has it; a moved directory does not count. Returns an empty
+/// string, or the reason of a failure.
 std::string SummaryStore::lock() {
-  if (lock_.get() >= 0) return {};
+  struct stat named {
+  }, locked{};
+  if (lock_.get() >= 0 && ::stat(settings_.directory.c_str(), &named) == 0 &&
+      ::fstat(lock_.get(), &locked) == 0 && named.st_ino == locked.st_ino &&
+      named.st_dev == locked.st_dev)
+    return {};
   lock_.reset(::open(settings_.directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (lock_.get() >= 0 && ::flock(lock_.get(), LOCK_EX | LOCK_NB) == 0) return {};
   const int why = errno;

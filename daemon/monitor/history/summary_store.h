@@ -32,6 +32,9 @@ class SummaryStore {
   /// the file only when it is complete.
   std::string open_new(const std::string& path);
   bool is_open() const { return file_.is_open(); }
+  /// Returns true if the path no longer names the database that is open: somebody moved, removed or
+  /// replaced it.
+  bool is_replaced() const { return file_.is_open() && !file_.in_place(); }
   void close() { file_.close(); }
   /// Returns true if the file that was opened last is damaged.
   bool corrupt() const { return file_.corrupt(); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "daemon/base/usual_time.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/raw_history_reader.h"
 #include "estimator/motion/acquisition.h"
@@ -26,7 +27,7 @@ RawBacklog RawBacklog::read(const Config& config, const std::vector<std::int64_t
   const std::string& directory = config.history->directory;
   const std::vector<RawLog> logs = raw_logs(raw_folder(directory));
   if (logs.empty()) return out;
-  const std::int64_t newest_us = *std::max_element(known_us.begin(), known_us.end());
+  const std::int64_t newest_us = usual_time_us(known_us, INT64_MIN);
   std::int64_t from_us = logs.back().start_us - backlog_us(kMost_s);
   if (newest_us != INT64_MIN) from_us = std::max(from_us, newest_us - backlog_us(kOtherClocks_s));
   const std::size_t most = kMaxSamples + static_cast<std::size_t>(config.pipeline.options.rate_hz *

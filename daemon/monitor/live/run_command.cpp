@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/log.h"
 #include "daemon/base/signals.h"
+#include "daemon/base/stop_limit.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
@@ -104,6 +106,11 @@ class LiveEvents {
 
 constexpr int kPoll_ms = 100;
 
+/// Parts of a stop, and what becomes of them if the disk is too slow.
+constexpr const char* kStateLeft = "the state (the next start resumes from an older one)";
+constexpr const char* kHistoryLeft = "the history (the next start closes its raw log)";
+constexpr const char* kNotificationsLeft = "notifications";
+
 /// Logs which sections of a state were not loaded, why, and the consequence. Keeps a copy of the
 /// file.
 void log_lost(const std::string& path, const std::vector<LostSection>& lost) {
@@ -178,6 +185,34 @@ std::optional<Config> read_configuration(const std::string& path, std::string& t
   return config;
 }
 
+/// Publishes what is open, and writes the history and the state. Logs failures.
+void end_run(const RunArguments& a, const StartCount& starts, LiveEstimation& live,
+             Housekeeping& housekeeping, HistoryReport& history, LiveEvents& events,
+             StopLimit& limit) {
+  limit.left({kStateLeft, kHistoryLeft, kNotificationsLeft});
+  // With a state file, open instants are published after the next start.
+  if (a.state.empty()) {
+    live.finish();
+    events.poll();
+  }
+  live.record_to(nullptr);
+  // The state is written meanwhile: each of the two may wait for a slow disk.
+  const std::future<void> closing =
+      std::async(std::launch::async | std::launch::deferred, [&history, &limit] {
+        history.close();
+        limit.done(kHistoryLeft);
+      });
+  if (!a.state.empty()) {
+    housekeeping.write_state(live);
+    const std::string error = count_clean_stop(a.state, starts);
+    if (!error.empty())
+      log(LogLevel::error,
+          fmt::format("cannot record this stop: {}; the next start will count as unclean", error));
+  }
+  limit.done(kStateLeft);
+  closing.wait();
+}
+
 }  // namespace
 
 int run(const RunArguments& a) {
@@ -196,6 +231,7 @@ int run(const RunArguments& a) {
       return refuse("run", fmt::format("{}: {}", a.state, why));
 
   catch_stop_signals();
+  StopLimit limit(&stop_requested);
   catch_reload_signal();
   ServiceManager manager;
   const auto lcm = open_lcm_with_retry(*config, a.url, manager, error);
@@ -242,17 +278,7 @@ int run(const RunArguments& a) {
     if (reload_requested() && housekeeping.reload(live, manager)) events.reconfigure(live.config());
   }
   manager.stopping();
-  // With a state file, open instants are published after the next start.
-  if (a.state.empty()) {
-    live.finish();
-    events.poll();
-  } else {
-    housekeeping.write_state(live);
-    error = count_clean_stop(a.state, starts);
-    if (!error.empty())
-      log(LogLevel::error,
-          fmt::format("cannot record this stop: {}; the next start will count as unclean", error));
-  }
+  end_run(a, starts, live, housekeeping, history, events, limit);
   if (recorder != nullptr && !can_log.close())
     return refuse("run", a.can_log + ": " + can_log.error());
   if (!a.quiet) log_summary(live.estimation());

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/usual_time.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 
@@ -17,7 +18,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kSilent_s = 5;
-constexpr std::int64_t kBehind_us = 2'000'000;
+constexpr double kBehind_s = 2;
 constexpr double kLoss_ratio = 1e-3;
 constexpr double kLate_ratio = 1e-2;
 constexpr std::int64_t kLittleDisk_bytes = 1'000'000'000;
@@ -66,13 +67,29 @@ void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string
                       : fmt::format("no samples for {}", span_text(silent)));
     return;
   }
-  const auto newest = std::max_element(s.newest_us.begin(), s.newest_us.end());
-  for (std::size_t i = 0; i < s.name.size(); ++i)
-    if (*newest - s.newest_us[i] > kBehind_us && !is_raised(s, "channel_silent", s.name[i]))
-      out.push_back(s.newest_us[i] == 0
-                        ? fmt::format("{}: no samples yet", s.name[i])
-                        : fmt::format("{}: silent for {}", s.name[i],
-                                      span_text(seconds_between(s.newest_us[i], *newest))));
+  const auto moves = [&](std::size_t i) {
+    return heard.first_service && i < heard.first_service->newest_us.size() &&
+           s.newest_us[i] > heard.first_service->newest_us[i];
+  };
+  std::vector<std::int64_t> moving_us(s.newest_us.size(), 0);
+  for (std::size_t i = 0; i < moving_us.size(); ++i)
+    if (moves(i)) moving_us[i] = s.newest_us[i];
+  const std::int64_t usual_moving_us = usual_time_us(moving_us, 0);
+  const std::int64_t usual_us =
+      usual_moving_us != 0 ? usual_moving_us : usual_time_us(s.newest_us, 0);
+  for (std::size_t i = 0; i < s.name.size(); ++i) {
+    const std::string& name = s.name[i];
+    if (is_raised(s, "channel_silent", name) || is_raised(s, "channel_clock", name)) continue;
+    const double behind_s = seconds_between(s.newest_us[i], usual_us);
+    const std::string span = span_text(std::abs(behind_s));
+    if (s.newest_us[i] == 0)
+      out.push_back(fmt::format("{}: no samples yet", name));
+    else if (moves(i) && std::abs(behind_s) > kBehind_s)
+      out.push_back(fmt::format("{}: its clock is {} {} the others", name, span,
+                                behind_s > 0 ? "behind" : "ahead of"));
+    else if (behind_s > kBehind_s)
+      out.push_back(fmt::format("{}: silent for {}", name, span));
+  }
   if (!heard.first_status || heard.first_status->name.size() != heard.status->name.size()) return;
   for (std::size_t i = 0; i < heard.status->name.size(); ++i) {
     const auto lost = static_cast<double>(heard.status->lost[i] - heard.first_status->lost[i]);

@@ -15,8 +15,9 @@ namespace framewatch::daemon {
 namespace {
 
 /// Kinds of events whose place is a channel with wrong or missing samples.
-constexpr std::array kOfChannels = {"channel_silent", "channel_stuck", "absurd_samples",
-                                    "two_senders",    "losses",        "channel_table"};
+constexpr std::array kOfChannels = {"channel_silent", "channel_stuck",  "channel_rate",
+                                    "channel_clock",  "absurd_samples", "two_senders",
+                                    "losses",         "channel_table"};
 
 bool is_channel(const Config& config, const std::string& place) {
   const auto& axes = config.pipeline.axes;
@@ -72,6 +73,9 @@ void describe_channel(Finding& f, const std::string& kind) {
   f.of_channel = true;
   if (kind == "channel_silent" || kind == "channel_stuck")
     f.advice = fmt::format("Check the power, cable and mounting of sensor {}.", f.place);
+  else if (kind == "channel_rate" || kind == "channel_clock")
+    f.advice = fmt::format("Check the {} of the node that sends {}.",
+                           kind == "channel_rate" ? "rate" : "clock", f.place);
   else if (kind == "absurd_samples")
     f.advice = fmt::format("Check sensor {}: its values are impossible.", f.place);
   else if (kind == "two_senders" || kind == "channel_table")

@@ -24,7 +24,11 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr Eigen::Index kMinInstants = 400;
-constexpr int kMaxMissing = 3;  ///< successive samples that are interpolated
+constexpr int kMaxMissing = 3;           ///< successive samples that are interpolated
+constexpr double kMostMissing = 0.05;    ///< share of a channel's samples that are interpolated
+constexpr double kRateTolerance = 0.02;  ///< relative difference from the configured rate
+/// Two floors never move more alike. Least 1 - correlation^2 of channels that are not copies.
+constexpr double kLeastUnlike = 1e-9;
 constexpr double kEverything_s = 1e9;
 
 constexpr double kSameInstant = 1e-6;  ///< of a sample
@@ -123,11 +127,46 @@ std::string name_of_column(const Config& config, const estimator::ComponentTest&
   return at < config.pipeline.axes.size() ? config.pipeline.axes[at].name : component.force;
 }
 
-/// Interpolates short runs of missing samples linearly; longer ones are a problem.
+/// Adds a problem if a record of a building has another rate than the configuration.
+void check_rate(const Config& config, const DiagnoseRecord& record,
+                std::vector<std::string>& problems) {
+  const double configured = config.pipeline.options.rate_hz, rate_hz = record.samples.rate_hz;
+  if (std::abs(rate_hz / configured - 1) > kRateTolerance)
+    problems.push_back(fmt::format("{}: sampled at {:.4g} Hz, but {} says rate_hz = {:g}",
+                                   record.path, rate_hz, config.path, configured));
+}
+
+/// Adds a problem for each channel that repeats a channel of another floor.
+void check_copies(const Config& config, const DiagnoseRecord& record,
+                  std::vector<std::string>& problems) {
+  const auto& axes = config.pipeline.axes;
+  const auto count = static_cast<Eigen::Index>(axes.size());
+  Eigen::MatrixXd motion = record.samples.accel.leftCols(count);
+  motion.rowwise() -= motion.colwise().mean().eval();
+  const auto repeats = [&](std::size_t a, std::size_t b) {
+    const auto one = motion.col(static_cast<Eigen::Index>(a)),
+               other = motion.col(static_cast<Eigen::Index>(b));
+    const double powers = one.squaredNorm() * other.squaredNorm(), product = one.dot(other);
+    return axes[a].horizontal() && axes[b].horizontal() && axes[a].story != axes[b].story &&
+           axes[a].direction == axes[b].direction && powers > 0 &&
+           product * product > (1 - kLeastUnlike) * powers;
+  };
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      if (!repeats(a, b)) continue;
+      problems.push_back(fmt::format(
+          "{}: channel '{}' repeats channel '{}' of another floor: give each its own samples",
+          record.path, axes[a].name, axes[b].name));
+      break;
+    }
+}
+
+/// Interpolates short runs of missing samples linearly. Adds a problem for a longer run, and for a
+/// channel with too many missing samples.
 void interpolate(const Config& config, const estimator::ComponentTest& component,
                  DiagnoseRecord& record, std::vector<std::string>& problems) {
   for (Eigen::Index a = 0; a < record.samples.accel.cols(); ++a) {
-    Eigen::Index last = -1;
+    Eigen::Index last = -1, filled = 0;
     for (Eigen::Index i = 0; i <= record.samples.accel.rows(); ++i) {
       const bool end = i == record.samples.accel.rows();
       if (!end && !std::isfinite(record.samples.accel(i, a))) continue;
@@ -145,8 +184,14 @@ void interpolate(const Config& config, const estimator::ComponentTest& component
         record.samples.accel(k, a) =
             from + (to - from) * static_cast<double>(k - last) / static_cast<double>(missing + 1);
       }
+      filled += missing;
       last = i;
     }
+    const Eigen::Index rows = record.samples.accel.rows();
+    if (static_cast<double>(filled) > kMostMissing * static_cast<double>(rows))
+      problems.push_back(fmt::format(
+          "{}: channel '{}': {} of {} samples are missing, {:.0f} % may be", record.path,
+          name_of_column(config, component, a), filled, rows, 100 * kMostMissing));
   }
 }
 
@@ -185,7 +230,9 @@ std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& 
   const bool read =
       log ? from_log(config, out, problems) : from_record(config, component, out, problems);
   if (!read) return std::nullopt;
+  if (!component.any()) check_rate(config, out, problems);
   interpolate(config, component, out, problems);
+  if (!component.any() && problems.size() == before) check_copies(config, out, problems);
   if (!log && problems.size() == before) remove_whole_delays(config, out.samples);
   if (out.samples.accel.rows() < kMinInstants)
     problems.push_back(fmt::format("{}: too short: {} instants, at least {} are needed", path,

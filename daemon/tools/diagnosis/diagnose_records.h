@@ -18,8 +18,9 @@ struct DiagnoseRecord {
 };
 
 /// Reads record files or LCM event logs, in the order of `paths`. Adds a problem ("place: rule")
-/// for each missing channel, missing samples, a record that is too short and a file given twice;
-/// the result is then incomplete.
+/// for each missing channel, missing samples, another rate than the configuration's, a channel that
+/// repeats one of another floor, a record that is too short and a file given twice; the result is
+/// then incomplete.
 std::vector<DiagnoseRecord> read_diagnose_records(const Config& config,
                                                   const std::vector<std::string>& paths,
                                                   const estimator::ComponentTest& component,

@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/numbers.h"
+#include "daemon/base/usual_time.h"
 #include "daemon/base/words.h"
 #include "daemon/config/channel_addresses.h"
 #include "daemon/config/header_differences.h"
@@ -25,6 +26,8 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kStampsPerNode = 4096;
+constexpr std::size_t kFirstStamps = 1000;  ///< of a log, among which its first time is
+constexpr double kNear_us = 10e6;           ///< from the usual first stamp
 constexpr int kDamageLines = 20;
 
 bool looks_like_record(const std::string& path) {
@@ -313,28 +316,42 @@ void ReplaySurvey::take_event(const drivers::LogEvent& event, LogSeen& seen) {
     seen.backwards_offset = event.offset;
   for (const double value : sample.accel_abs_mps2)
     if (std::isinf(value) && seen.infinite_offset < 0) seen.infinite_offset = event.offset;
-  log_first_us_ = seen.samples == 0 ? time_us : std::min(log_first_us_, time_us);
-  log_last_us_ = seen.samples == 0 ? time_us : std::max(log_last_us_, time_us);
-  ++seen.samples;
+  seen.sample(time_us);
   if (intake().last_node() >= stamps_.size()) stamps_.resize(intake().last_node() + 1);
   NodeStamps& node = stamps_[intake().last_node()];
   if (node.stamps.empty()) node.place = {event.channel, sample.node};
   if (node.stamps.size() < kStampsPerNode) node.stamps.push_back({sample.sequence, time_us});
 }
 
+void ReplaySurvey::LogSeen::sample(std::int64_t time_us) {
+  seconds.passed(time_us);
+  if (samples++ < static_cast<std::int64_t>(kFirstStamps)) first_stamps_us.push_back(time_us);
+}
+
+std::int64_t ReplaySurvey::LogSeen::first_us() const {
+  const std::int64_t usual_us = usual_time_us(first_stamps_us, INT64_MIN);
+  std::int64_t first_us = usual_us;
+  for (const std::int64_t us : first_stamps_us)
+    if (us < first_us && static_cast<double>(usual_us) - static_cast<double>(us) < kNear_us)
+      first_us = us;
+  return first_us;
+}
+
 // Nodes need not stop at the same time at the end of a log, so the next one may begin earlier by
 // lateness_s.
 bool ReplaySurvey::extend(const std::string& path, std::int64_t first_us, std::int64_t last_us) {
   const auto allowed_us = static_cast<std::int64_t>(config_.pipeline.options.lateness_s * 1e6);
-  const bool in_order = !any_ || first_us > last_us_ - allowed_us;
+  const bool in_order = !any_ || first_us > end_us_ - allowed_us;
   if (!in_order)
     problems_.push_back(
         fmt::format("{}: its time, {:.6f} s to {:.6f} s, is not after {}, which ends at {:.6f} s: "
                     "give the files in order of time, without overlap",
                     path, static_cast<double>(first_us) * 1e-6, static_cast<double>(last_us) * 1e-6,
-                    last_path_, static_cast<double>(last_us_) * 1e-6));
-  first_us_ = any_ ? std::min(first_us_, first_us) : first_us;
-  last_us_ = any_ ? std::max(last_us_, last_us) : last_us;
+                    last_path_, static_cast<double>(end_us_) * 1e-6));
+  const auto [least_us, most_us] = std::minmax(first_us, last_us);  // the clocks may step back
+  first_us_ = any_ ? std::min(first_us_, least_us) : least_us;
+  last_us_ = any_ ? std::max(last_us_, most_us) : most_us;
+  end_us_ = last_us;
   any_ = true;
   last_path_ = path;
   return in_order;
@@ -382,11 +399,13 @@ void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::
   else if (seen.samples == 0 && malformed == 0 && !seen.left_out)
     problems_.push_back(fmt::format("{}: no message for the channels of {}; it has {}", path,
                                     config_.path, list(seen.channels)));
-  const bool in_order = seen.samples == 0 || extend(path, log_first_us_, log_last_us_);
+  const bool in_order =
+      seen.samples == 0 || extend(path, seen.first_us(), seen.seconds.newest_us());
   if (in_order && seen.backwards_offset >= 0)
-    problems_.push_back(fmt::format(
-        "{}: byte {}: time runs backwards: a node's sample is not newer than the one before", path,
-        seen.backwards_offset));
+    notes_.push_back(fmt::format(
+        "{}: byte {}: time runs backwards: a node's sample is not newer than the one before. It is "
+        "taken as `framewatch run` takes it",
+        path, seen.backwards_offset));
   std::sort(stamps_.begin(), stamps_.end(),
             [](const NodeStamps& a, const NodeStamps& b) { return a.place < b.place; });
   for (const auto& [node, stamps] : stamps_) {
@@ -424,9 +443,7 @@ void ReplaySurvey::take_counts(const drivers::LogEvent& event, LogSeen& seen) {
       return;
     }
     place_ = Place::inside;
-    log_first_us_ = seen.samples == 0 ? time_us : std::min(log_first_us_, time_us);
-    log_last_us_ = seen.samples == 0 ? time_us : std::max(log_last_us_, time_us);
-    ++seen.samples;
+    seen.sample(time_us);
     if (estimation_ != nullptr) estimation_->sample(sample);
   };
   const auto result = counts_.message(event.channel, event.data, give);
@@ -459,7 +476,7 @@ void ReplaySurvey::judge_raw_log(const std::string& path, const LogSeen& seen) {
   else if (std::exchange(ignored_, listed(counts_.unknown())) != ignored_ && !ignored_.empty())
     notes_.push_back(fmt::format("{}: ignored channels that {} does not have: {}", path,
                                  config_.path, ignored_));
-  if (seen.samples > 0) extend(path, log_first_us_, log_last_us_);
+  if (seen.samples > 0) extend(path, seen.first_us(), seen.seconds.newest_us());
   if (counts_.rate_hz() > 0) check_rate(path, counts_.rate_hz());
 }
 

@@ -100,6 +100,11 @@ class ReplaySurvey {
     bool left_out = false;              ///< a sample lies outside the span
     bool is_raw = false;                ///< a raw log of a history
     std::string malformed;              ///< why the first malformed message is
+    SensorSeconds seconds;              ///< follows the samples, not a single wrong clock
+    std::vector<std::int64_t> first_stamps_us;
+
+    void sample(std::int64_t time_us);
+    std::int64_t first_us() const;
   };
 
   void add_record(ReplayInput input, std::int64_t bytes);
@@ -148,7 +153,7 @@ class ReplaySurvey {
   std::vector<NodeStamps> stamps_;  ///< of one log, by AccelIntake::last_node()
   std::int64_t bytes_ = 0, damaged_bytes_ = 0;
   std::int64_t first_us_ = 0, last_us_ = 0;  ///< of all samples
-  std::int64_t log_first_us_ = 0, log_last_us_ = 0;
+  std::int64_t end_us_ = 0;                  ///< time at the end of the last file
   bool any_ = false;
   std::size_t faults_ = 0;
 };

@@ -50,6 +50,54 @@ TEST(SqliteFile, AnInvalidStatementFailsInEveryCall) {
   EXPECT_NE(file.error().find("not_there"), std::string::npos) << file.error();
 }
 
+constexpr const char* kEndless =
+    "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT sum(x) FROM c";
+
+TEST(SqliteFile, InterruptsAStatementWithoutEnd) {
+  constexpr double kLongest_s = 0.2;
+  const test::TemporaryDirectory directory;
+  SqliteFile file(kLongest_s);
+  ASSERT_TRUE(file.open(directory.path("db")));
+  EXPECT_FALSE(file.execute(kEndless));
+  EXPECT_NE(file.error().find("interrupted"), std::string::npos) << file.error();
+  SqliteStatement endless = file.prepare(kEndless);
+  EXPECT_FALSE(endless.row());
+  EXPECT_TRUE(file.failed());
+  EXPECT_FALSE(file.corrupt());
+}
+
+TEST(SqliteFile, RunsNoSqlOfTheFile) {
+  const test::TemporaryDirectory directory;
+  SqliteFile file;
+  ASSERT_TRUE(file.open(directory.path("db")));
+  ASSERT_TRUE(
+      file.execute("CREATE TABLE a (x INTEGER);"
+                   "CREATE TRIGGER t AFTER INSERT ON a BEGIN DELETE FROM a; END;"
+                   "CREATE VIEW v AS SELECT x FROM a;"));
+  ASSERT_TRUE(file.execute("INSERT INTO a VALUES (1)"));
+  {
+    SqliteStatement count = file.prepare("SELECT count(*) FROM a");
+    ASSERT_TRUE(count.row());
+    EXPECT_EQ(count.integer(0), 1);
+  }
+  SqliteStatement view = file.prepare("SELECT x FROM v");
+  EXPECT_FALSE(view.row());
+}
+
+TEST(SqliteFile, KnowsWhetherItsPathStillNamesIt) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.path("db"), elsewhere = directory.path("elsewhere");
+  SqliteFile file;
+  ASSERT_TRUE(file.open(path));
+  EXPECT_TRUE(file.in_place());
+  std::filesystem::rename(path, elsewhere);
+  EXPECT_FALSE(file.in_place());
+  std::filesystem::copy_file(elsewhere, path);
+  EXPECT_FALSE(file.in_place());
+  std::filesystem::rename(elsewhere, path);
+  EXPECT_TRUE(file.in_place());
+}
+
 }  // namespace sqlite_file_test
 
 namespace damaged_database_test {

@@ -130,6 +130,24 @@ TEST(DurableFile, ReportsWhyItCannotBeCreated) {
   EXPECT_NE(error.find("No such file"), std::string::npos) << error;
 }
 
+TEST(DurableFile, KnowsThatItWasRemovedOrReplaced) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.path("log"), partial = path + ".partial";
+  for (const bool replaced : {false, true}) {
+    std::string error;
+    DurableFile file;
+    ASSERT_TRUE(file.open(path, error)) << error;
+    EXPECT_TRUE(file.append("kept"));
+    EXPECT_FALSE(file.is_lost());
+    std::filesystem::remove(partial);
+    if (replaced) test::write_file(partial, "another one");
+    EXPECT_TRUE(comes_true([&] { return file.is_lost(); }));
+    std::filesystem::remove(partial);
+    EXPECT_FALSE(file.close(error));
+    EXPECT_NE(error.find("log.partial"), std::string::npos) << error;
+  }
+}
+
 TEST(DurableFile, IsNotCreatedWithoutAWrite) {
   const test::TemporaryDirectory directory;
   DurableFile file;

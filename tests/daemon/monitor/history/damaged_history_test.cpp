@@ -13,6 +13,7 @@
 #include "daemon/monitor/history/history_command.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "drivers/files/encoded.h"
+#include "drivers/lcm/lcm_provider.h"
 #include "tests/daemon/monitor/history/summary_program.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/temporary.h"
@@ -127,6 +128,61 @@ TEST_F(DamagedHistory, KeepsReadableEvents) {
   expect_a_new_one({1});
 }
 
+/// SQL of a foreign database never runs in the daemon.
+TEST_F(DamagedHistory, SetsADatabaseWithForeignPartsAside) {
+  for (const std::string sql :
+       {"CREATE TRIGGER a AFTER INSERT ON event BEGIN DELETE FROM event; END",
+        "ALTER TABLE period RENAME TO p;"
+        "CREATE VIEW period AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c)"
+        " SELECT 60 AS period_s, x AS start_us, 1 AS windows, x AS last_us, 1 AS open FROM c",
+        "CREATE TABLE other (x)", "DROP INDEX event_time"}) {
+    fs::remove_all(folder());
+    {
+      SummaryStore store(*config_.history);
+      ASSERT_EQ(store.open(), "");
+      SqliteFile file;
+      ASSERT_TRUE(file.open(database()));
+      ASSERT_TRUE(file.execute(sql)) << file.error();
+    }
+    SummaryQuery query;
+    EXPECT_NE(query.open(folder()).find("another program's"), std::string::npos) << sql;
+    expect_a_new_one({});
+  }
+}
+
+TEST_F(DamagedHistory, BeginsAnewWhenTheDatabaseIsMovedRemovedOrReplaced) {
+  const std::string copy = directory_.path("copy"), moved = directory_.path("moved");
+  fs::copy_file(database(), copy);
+  SummaryHistory history(config_);
+  std::int64_t count = 0, id = 10;
+  const auto expect_another = [&](const std::string& how) {
+    ++count;
+    EXPECT_TRUE(comes_true([&] { return history.counters().set_aside.count == count; }, kSoon))
+        << how;
+    history.message("FRAMEWATCH_EVENT", drivers::encoded(gap(++id)));
+    EXPECT_TRUE(comes_true(
+        [&] {
+          const std::vector<std::int64_t> events = stored_events();
+          return !events.empty() && events.back() == id;
+        },
+        kSoon))
+        << how;
+    EXPECT_NE(history.counters().set_aside.reason.find("removed or replaced"), std::string::npos);
+    EXPECT_EQ(history.counters().trouble, "") << how;
+  };
+  ASSERT_TRUE(comes_true([&] { return history.counters().commits > 0; }, kSoon));
+  fs::rename(database(), moved);
+  expect_another("moved");
+  EXPECT_EQ(history.counters().set_aside.path, "");
+  for (const char* ending : {"", "-wal", "-shm"}) fs::remove(database() + ending);
+  expect_another("removed");
+  EXPECT_EQ(history.counters().set_aside.path, "");
+  fs::rename(copy, database());
+  expect_another("replaced");
+  fs::remove_all(folder());
+  expect_another("removed with its folder");
+}
+
 TEST_F(DamagedHistory, LeavesOutImpossiblePeriods) {
   std::vector<SummaryPeriods> sound;
   std::optional<std::int64_t> newest_us;
@@ -196,6 +252,23 @@ TEST_F(DamagedHistory, TheCommandReportsDamageAndWritesNothing) {
   }
 }
 
+/// service_t and `framewatch status` show what raised() has.
+TEST_F(DamagedHistory, RaisesTheAlarmUntilTheProgramEnds) {
+  cut_in_half();
+  drivers::LcmProvider lcm("memq://");
+  HistoryReport report(config_, lcm);
+  std::int64_t now_us = kStart_us;
+  const auto raised = [&] {
+    (void)report.update(now_us += 1'000'000);
+    return report.raised().find("history", "database") != nullptr;
+  };
+  EXPECT_TRUE(comes_true(raised, kSoon));
+  for (int minute = 0; minute < 60; ++minute) {
+    now_us += 60'000'000;
+    EXPECT_TRUE(raised());
+  }
+}
+
 TEST(HistoryMonitor, KeepsAnAlarmForADatabaseThatWasSetAside) {
   HistoryMonitor monitor;
   history_status_t s{};
@@ -209,14 +282,17 @@ TEST(HistoryMonitor, KeepsAnAlarmForADatabaseThatWasSetAside) {
   EXPECT_EQ(raised[0].state, event_state::raised);
   EXPECT_EQ(raised[0].severity, severity::alarm);
   EXPECT_EQ(raised[0].time_us, kStart_us) << "the host's, before a sample has come";
-  EXPECT_NE(raised[0].message.find(aside.path), std::string::npos);
+  EXPECT_EQ(raised[0].message,
+            "the database is unusable: malformed: renamed it /h/history.sqlite.corrupt-1 and "
+            "started a new one. Check the disk, and who else writes there");
   EXPECT_TRUE(monitor.update(kStart_us + 60'000'000, s, aside).empty());
-  aside.count = 2;
+  aside = {2, "", "it was removed", ""};
   const auto changed = monitor.update(kStart_us + 61'000'000, s, aside);
   ASSERT_EQ(changed.size(), 1u);
   EXPECT_EQ(changed[0].id, raised[0].id);
   EXPECT_EQ(changed[0].state, event_state::changed);
   EXPECT_EQ(changed[0].value, 2);
+  EXPECT_NE(changed[0].message.find(": it was removed: started a new one."), std::string::npos);
 }
 
 }  // namespace damaged_history_test

@@ -152,6 +152,38 @@ TEST_F(HistoryFailure, CountsDataThatTheQueueDrops) {
   EXPECT_LE(counters.queued, kQueue);
 }
 
+TEST_F(HistoryFailure, BeginsAnotherRawLogWhenItsFileIsRemoved) {
+  constexpr std::int64_t kSecond_us = 1'000'000;
+  {
+    HistoryKeeper keeper(*config_.history);
+    RawHistory raw(config_, [&](auto log) { keeper.retire(std::move(log)); });
+    std::int64_t time_us = 0, now_us = 0;
+    const auto second = [&] {
+      for (int i = 0; i < 100; ++i)
+        raw.sample({estimator::from_microseconds(time_us += 10'000), 0, 1.0});
+      raw.tick(now_us += kSecond_us);
+    };
+    second();
+    const auto logs = [&] { return raw_logs(raw_folder(config_.history->directory)); };
+    ASSERT_TRUE(comes_true([&] { return !logs().empty(); }, kSoon));
+    EXPECT_EQ(raw.trouble(), "");
+    fs::remove(logs().front().path);
+    ASSERT_TRUE(comes_true(
+        [&] {
+          second();
+          return !raw.trouble().empty();
+        },
+        kSoon));
+    EXPECT_NE(raw.trouble().find("removed"), std::string::npos) << raw.trouble();
+    second();
+    ASSERT_TRUE(comes_true([&] { return !logs().empty(); }, kSoon));
+    raw.tick(now_us += RawHistory::kTold_us + kSecond_us);
+    EXPECT_EQ(raw.trouble(), "");
+    raw.finish();
+  }
+  EXPECT_GE(test::raw_counts(config_.history->directory).size(), 100u);
+}
+
 TEST_F(HistoryFailure, WaitsForAMissingFolder) {
   test::write_file(config_.history->directory, "a file where the folder should be");
   History history(config_);

@@ -108,6 +108,29 @@ TEST(Health, ReportsASilentHub) {
             "the messages that wait for the hub cannot be read or written: disk I/O error");
 }
 
+/// The other channels were called silent for ten years.
+TEST(Health, NamesTheChannelWhoseClockIsApart) {
+  constexpr std::int64_t kTenYears_us = 3652 * kDay_us;
+  const Config config{};
+  Heard h = well(config);
+  h.service->name = h.first_service->name = {"base", "F1", "F2", "F3"};
+  const std::int64_t now_us = 10 * kSecond_us;
+  h.first_service->newest_us = {now_us, now_us, now_us, now_us};
+  h.service->newest_us.assign(4, now_us + kSecond_us);
+  h.service->newest_us[2] += kTenYears_us;
+  EXPECT_EQ(odd(h, config), "F2: its clock is 3652 d 0 h ahead of the others");
+  h.first_service->newest_us[2] -= kTenYears_us;
+  h.service->newest_us[2] -= 2 * kTenYears_us;
+  h.first_service->newest_us[2] -= kTenYears_us;
+  EXPECT_EQ(odd(h, config), "F2: its clock is 3652 d 0 h behind the others");
+  h.service->newest_us = {now_us, now_us, now_us, now_us + 7 * kSecond_us};
+  h.first_service->newest_us = {now_us, now_us, now_us, now_us + 6 * kSecond_us};
+  const auto found = oddities(h, config, kNow_us, [](const event_t& e) { return e.message; });
+  EXPECT_EQ(found, std::vector<std::string>(
+                       {"base: silent for 7 s", "F1: silent for 7 s", "F2: silent for 7 s"}))
+      << "only F3 sends";
+}
+
 TEST(Health, ReportsProblems) {
   const Config config{};
   Heard h = well(config);

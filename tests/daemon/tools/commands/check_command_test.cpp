@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdlib>
 
 #include "daemon/tools/commands/check_command.h"
@@ -120,6 +121,20 @@ TEST(CheckCommand, ReportsEveryProblemOfABadConfigurationAndExitsTwo) {
       << out;
   EXPECT_NE(out.find(path + ":12:9: channel 'base-x'.story: must be >= 0"), std::string::npos)
       << out;
+}
+
+TEST(CheckCommand, PrintsTwentyProblemsAndCountsTheOthers) {
+  constexpr int kProblems = 30'000, kPrinted = 20;
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.path("bad.toml");
+  std::string text = kGoodConfig;
+  for (int i = 0; i < kProblems; ++i) text += "unknown_" + std::to_string(i) + " = 1\n";
+  test::write_file(path, text);
+  std::string out;
+  EXPECT_EQ(run_check(path, out), 2);
+  EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), kPrinted + 2) << out.substr(0, 5000);
+  EXPECT_NE(out.find("and 29980 more problems"), std::string::npos);
+  EXPECT_NE(out.find(path + ": 30000 problems"), std::string::npos);
 }
 
 TEST(CheckCommand, JsonHasTheProblems) {

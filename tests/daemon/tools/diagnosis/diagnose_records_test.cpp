@@ -94,6 +94,63 @@ TEST(DiagnoseRecords, AlignChannelsByTheirDelays) {
   EXPECT_NEAR(compared_channels(config, records).axes[1].delay, 0.002, 1e-12);
 }
 
+constexpr double kPeriod_s = 0.37;
+
+/// Returns the problems of a record of kSpring. `value` returns the text of the channel y.
+template <typename Value>
+std::vector<std::string> problems_of_record(double rate_hz, Value value) {
+  std::string text = "time_s,ground,y\n";
+  for (int i = 0; i < kSamples; ++i)
+    text += fmt::format("{:.4f},{:.9f},{}\n", i / rate_hz,
+                        std::sin(2 * M_PI * i / (rate_hz * kPeriod_s)), value(i));
+  const test::TemporaryDirectory folder;
+  test::write_file(folder.path("a.csv"), text);
+  std::vector<std::string> problems;
+  read_diagnose_records(test::good(kSpring), {folder.path("a.csv")}, {}, problems);
+  for (std::string& problem : problems) problem.erase(0, folder.path("").size());
+  return problems;
+}
+
+std::string other_motion(int i) {
+  return fmt::format("{:.9f}", std::cos(0.2 * i) + 0.3 * std::sin(0.013 * i));
+}
+
+using Problems = std::vector<std::string>;
+
+TEST(DiagnoseRecords, AreRefusedAtAnotherRate) {
+  EXPECT_EQ(problems_of_record(kRate_hz, other_motion), Problems());
+  EXPECT_EQ(problems_of_record(kRate_hz / 2, other_motion),
+            Problems({"a.csv: sampled at 50 Hz, but c.toml says rate_hz = 100"}));
+  EXPECT_EQ(problems_of_record(2 * kRate_hz, other_motion),
+            Problems({"a.csv: sampled at 200 Hz, but c.toml says rate_hz = 100"}));
+}
+
+TEST(DiagnoseRecords, AreRefusedIfEveryOtherSampleIsMissing) {
+  EXPECT_EQ(problems_of_record(kRate_hz, [](int i) { return i % 2 ? "" : other_motion(i); }),
+            Problems({"a.csv: channel 'y': 1000 of 2000 samples are missing, 5 % may be"}));
+  EXPECT_EQ(problems_of_record(kRate_hz, [](int i) { return i % 25 ? other_motion(i) : ""; }),
+            Problems())
+      << "4 %";
+}
+
+TEST(DiagnoseRecords, AreRefusedIfAFloorRepeatsTheBase) {
+  const auto base = [](int i) { return std::sin(2 * M_PI * i / (kRate_hz * kPeriod_s)); };
+  const Problems copy{
+      "a.csv: channel 'y' repeats channel 'ground' of another floor: give each its own samples"};
+  EXPECT_EQ(problems_of_record(kRate_hz, [&](int i) { return fmt::format("{:.9f}", base(i)); }),
+            copy);
+  EXPECT_EQ(
+      problems_of_record(kRate_hz, [&](int i) { return fmt::format("{:.9f}", 0.4 - 3 * base(i)); }),
+      copy)
+      << "with another scale and offset";
+  EXPECT_EQ(
+      problems_of_record(
+          kRate_hz,
+          [&](int i) { return fmt::format("{:.9f}", base(i) + 1e-3 * std::sin(11.0 * i * i)); }),
+      Problems())
+      << "a stiff building with noise";
+}
+
 TEST(ComparedChannels, LeaveOutCheckChannels) {
   const std::string check = "name = \"F1-Y1\"\ncheck = true\n";
   Config config = test::good(test::replaced(test::kGoodConfig, "name = \"F1-Y1\"\n", check));

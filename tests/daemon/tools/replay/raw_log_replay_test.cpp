@@ -96,6 +96,50 @@ TEST_F(RawLogReplay, GivesTheEstimatesOfItsExportedLog) {
   EXPECT_EQ(of_raw, test::payloads(path("b.lcmlog"), "FRAMEWATCH_ESTIMATE"));
 }
 
+/// One node's clock leaps ten years ahead and back, then ten years back; at last all clocks go back
+/// by 1,024 weeks.
+TEST_F(RawLogReplay, ReadsWhatIsWrittenWhileClocksAreWrong) {
+  constexpr std::int64_t kStart_us = 1'700'000'000'000'000, kStep_us = 10'000;
+  constexpr std::int64_t kTenYears_us = 315'576'000'000'000, kWeeks_us = 1024 * 604'800'000'000;
+  constexpr int kInstants = 2000, kOdd = 3, kAxes = 10;
+  config_.history->directory = path("odd");
+  config_.history->rotate_s = 2;
+  {
+    HistoryKeeper keeper(*config_.history);
+    RawHistory raw(config_, [&](auto log) { keeper.retire(std::move(log)); });
+    for (std::int64_t i = 0; i < kInstants; ++i)
+      for (int axis = 0; axis < kAxes; ++axis) {
+        std::int64_t time_us = kStart_us + kStep_us * i;
+        if (axis == kOdd && i >= 300 && i < 600) time_us += kTenYears_us;
+        if (axis == kOdd && i >= 700 && i < 900) time_us -= kTenYears_us;
+        if (i >= 1200) time_us -= kWeeks_us;
+        raw.sample({estimator::from_microseconds(time_us), axis, std::sin(0.1 * double(i))});
+      }
+    raw.finish();
+  }
+  const auto expect_readable = [&](const std::vector<std::string>& paths) {
+    ReplaySurvey survey(config_, false);
+    for (const std::string& log : paths) survey.add(log);
+    survey.finish();
+    EXPECT_EQ(survey.problems(), std::vector<std::string>());
+    EXPECT_TRUE(survey.any_sample());
+  };
+  std::vector<std::string> logs;
+  for (const RawLog& log : raw_logs(raw_folder(path("odd")))) logs.push_back(log.path);
+  EXPECT_GT(logs.size(), 5u);
+  expect_readable(logs);
+  const std::string config = path("building.toml");
+  test::write_file(config, test::read_file(test::table_config()) + "\n[history]\ndirectory = \"" +
+                               path("odd") + "\"\n");
+  testing::internal::CaptureStdout();
+  HistoryArguments exported;
+  exported.place = config;
+  exported.raw = path("exported.lcmlog");
+  ASSERT_EQ(history(exported), 0);
+  testing::internal::GetCapturedStdout();
+  expect_readable({exported.raw});
+}
+
 TEST_F(RawLogReplay, ReplaysAPart) {
   ReplaySurvey whole(config_, false);
   whole.add(raw_log());
