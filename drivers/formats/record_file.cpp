@@ -76,6 +76,9 @@ RecordFormat format_of_numbers(std::int64_t first_line, std::size_t width, FileP
 RecordFormat format_of_network(std::string_view first_line) {
   if (holds(first_line, "(Format v")) return RecordFormat::cosmos;
   if (first_line.starts_with("Origin Time")) return RecordFormat::knet;
+  if (is_geonet_title(first_line)) return RecordFormat::geonet;
+  if (is_csmip_title(first_line)) return RecordFormat::csmip;
+  if (is_esm_title(first_line)) return RecordFormat::esm;
   return is_smc_title(first_line) ? RecordFormat::smc : RecordFormat::detect;
 }
 
@@ -112,7 +115,7 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
     problems.add(
         0,
         "no known record format: not a table with a header such as time_s,<channel names>, "
-        "not what a strong-motion network publishes (COSMOS, SMC, K-NET, SAC, "
+        "not what a strong-motion network publishes (COSMOS, CSMIP, SMC, K-NET, ESM, GeoNet, SAC, "
         "miniSEED 2), not PEER AT2, not Xsens DOT, not MATLAB, not rows of numbers");
   else
     return text ? RecordFormat::csv : format_of_numbers(first_line, width, problems);
@@ -142,8 +145,8 @@ void check_declared(RecordFormat format, const RecordOptions& options, FileProbl
     problems.add(0, "the file has its own time: --step does not apply");
   if (!options.time_column.empty() || options.time_unit_s || options.decimal)
     problems.add(0, "--time, --time-unit and --decimal are for tables with a header");
-  if (options.zone_min && format != RecordFormat::cosmos)
-    problems.add(0, "--zone is for tables with a header, and for COSMOS");
+  if (options.zone_min && format != RecordFormat::cosmos && format != RecordFormat::csmip)
+    problems.add(0, "--zone is for tables with a header, COSMOS and CSMIP");
   if (!options.columns.empty() && format != RecordFormat::mseed)
     problems.add(0, "--columns is for tables with a header, MATLAB files and miniSEED");
 }
@@ -185,6 +188,12 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
       return read_smc(problems);
     case RecordFormat::knet:
       return read_knet(problems);
+    case RecordFormat::csmip:
+      return read_csmip(options, problems);
+    case RecordFormat::esm:
+      return read_esm(problems);
+    case RecordFormat::geonet:
+      return read_geonet(problems);
     case RecordFormat::sac:
       return read_sac(options, problems);
     case RecordFormat::columns:
