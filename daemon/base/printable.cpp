@@ -56,6 +56,17 @@ CodePoint first_character(std::string_view text) {
   return {value, bytes};
 }
 
+std::string csv_text(std::string_view text) {
+  const std::string shown = printable(text);
+  if (shown.find_first_of(",\"") == std::string::npos) return shown;
+  std::string out = "\"";
+  for (const char c : shown) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
 std::string html_text(const std::string& text) {
   std::string out;
   for (const char c : text) {

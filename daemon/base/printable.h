@@ -21,6 +21,10 @@ CodePoint first_character(std::string_view text);
 /// Returns the text with the markup characters of HTML escaped: & < > and quotes.
 std::string html_text(const std::string& text);
 
+/// Returns printable(text) as a cell of CSV: in quotes if it holds a comma or a quote, with quotes
+/// doubled.
+std::string csv_text(std::string_view text);
+
 enum class Tone { good, doubtful, bad, strong };
 
 /// Returns true if the stream is a terminal with colors: TERM is not "dumb", and NO_COLOR is unset

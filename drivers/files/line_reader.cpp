@@ -39,6 +39,11 @@ bool LineReader::fill() {
   return got >= 0 || fail(file_.error());
 }
 
+std::string LineReader::left_out_note(std::string_view what) const {
+  return fmt::format("line {}: the last {} has no line end and may be cut off: left out", number_,
+                     what);
+}
+
 bool LineReader::next(std::string_view& line) {
   if (!file_.is_open()) return false;
   std::size_t end = buffer_.find('\n', begin_);

@@ -29,6 +29,9 @@ class LineReader {
   std::int64_t number() const { return number_; }
   /// Returns true if the line last read has a line end, so that it cannot be cut off.
   bool line_ended() const { return line_ended_; }
+  /// Returns the note for a reader that leaves out `what` ("row", "number") at the end of the line
+  /// last read, because that line has no line end.
+  std::string left_out_note(std::string_view what) const;
 
  private:
   bool fill();

@@ -22,7 +22,13 @@ std::optional<Number> parse(std::string_view text) {
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
-  return parse<double>(text);
+  const auto value = parse<double>(text);
+  const std::size_t mark = value ? std::string_view::npos : text.find_first_of("Dd");
+  if (mark == std::string_view::npos || mark + 1 >= text.size()) return value;
+  if (text[mark + 1] != '+' && text[mark + 1] != '-') return value;
+  std::string with_e(text);
+  with_e[mark] = 'e';
+  return parse<double>(with_e);
 }
 
 std::optional<std::int64_t> parse_integer(std::string_view text) {

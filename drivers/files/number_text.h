@@ -9,8 +9,8 @@
 
 namespace framewatch::drivers {
 
-/// Parses all of `text` as a decimal number, in any locale; "nan" and "inf" count as numbers.
-/// Returns nullopt for any other text.
+/// Parses all of `text` as a decimal number, in any locale; "nan" and "inf" count as numbers, and
+/// so does a double of Fortran, "1.5D-02". Returns nullopt for any other text.
 std::optional<double> parse_number(std::string_view text);
 /// Parses all of `text` as a whole number. Returns nullopt for any other text.
 std::optional<std::int64_t> parse_integer(std::string_view text);

@@ -27,8 +27,8 @@ constexpr int kDeepestArray = 16;
 constexpr std::int64_t kMaxInflated = std::int64_t{1} << 29;
 constexpr std::int64_t kInflateBytes = 1 << 16;
 
-/// Reads bytes of a file, or of an element that was unpacked into memory. Returns false beyond its
-/// end.
+/// Reads bytes of a file, or of an element that is unpacked. Returns false beyond its end. Offsets
+/// ascend from call to call, but for the eight bytes of a tag.
 using ReadAt = std::function<bool(void* to, std::int64_t bytes, std::int64_t at)>;
 
 struct MatElement {
@@ -101,40 +101,81 @@ class MatLayout {
   bool big_endian_;
 };
 
-std::optional<std::string> inflated(InputFile& input, const MatElement& packed) {
-  const std::int64_t most = std::min(kMaxInflated, unpack_limit(input.size()));
-  z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) return std::nullopt;
-  std::string from(static_cast<std::size_t>(kInflateBytes), '\0'), out, to = from;
-  int code = Z_OK;
-  for (std::int64_t done = 0; code == Z_OK && done < packed.bytes && std::ssize(out) <= most;) {
-    const std::int64_t bytes = std::min(kInflateBytes, packed.bytes - done);
-    if (input.read(from.data(), bytes, packed.content + done) != bytes) break;
-    done += bytes;
-    stream.next_in = reinterpret_cast<Bytef*>(from.data());
-    stream.avail_in = static_cast<uInt>(bytes);
-    do {
-      stream.next_out = reinterpret_cast<Bytef*>(to.data());
-      stream.avail_out = static_cast<uInt>(kInflateBytes);
-      code = inflate(&stream, Z_NO_FLUSH);
-      out.append(to, 0, to.size() - stream.avail_out);
-    } while (code == Z_OK && stream.avail_out == 0 && std::ssize(out) <= most);
-    if (code == Z_BUF_ERROR) code = Z_OK;
+/// Unpacks a compressed element piece by piece, so that a check of it needs little memory.
+class Inflater {
+ public:
+  Inflater(InputFile& input, const MatElement& packed)
+      : input_(input), packed_(packed), most_(std::min(kMaxInflated, unpack_limit(input.size()))) {
+    good_ = inflateInit(&stream_) == Z_OK;
   }
-  inflateEnd(&stream);
-  if (code != Z_STREAM_END || std::ssize(out) > most) return std::nullopt;
-  return out;
-}
+  ~Inflater() { inflateEnd(&stream_); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
 
-bool is_sound_unpacked(const std::string& bytes, bool big_endian) {
-  const ReadAt read = [&](void* to, std::int64_t count, std::int64_t at) {
-    if (at + count > std::ssize(bytes)) return false;
-    std::memcpy(to, bytes.data() + at, static_cast<std::size_t>(count));
+  /// Reads as ReadAt does. `at` must not lie before the window of the last kInflateBytes.
+  bool read(void* to, std::int64_t bytes, std::int64_t at) {
+    while (good_ && at + bytes > begin_ + std::ssize(window_)) fill();
+    if (at < begin_ || at + bytes > begin_ + std::ssize(window_)) return false;
+    std::memcpy(to, window_.data() + (at - begin_), static_cast<std::size_t>(bytes));
     return true;
-  };
-  const MatLayout layout(read, big_endian);
-  const auto matrix = layout.element(0, std::ssize(bytes));
-  return matrix && matrix->type == kMatrix && layout.is_sound(*matrix, 1);
+  }
+
+  /// Unpacks the rest. Returns the unpacked bytes; nullopt when they are damaged or too many.
+  std::optional<std::int64_t> finish() {
+    while (good_) fill();
+    if (code_ != Z_STREAM_END) return std::nullopt;
+    return begin_ + std::ssize(window_);
+  }
+
+ private:
+  /// Moves the window on. Sets good_ to false at the end and on damage.
+  void fill() {
+    constexpr std::int64_t kKept = 64;
+    const std::int64_t drop = std::max<std::int64_t>(0, std::ssize(window_) - kKept);
+    window_.erase(0, static_cast<std::size_t>(drop));
+    begin_ += drop;
+    const std::size_t kept = window_.size();
+    window_.resize(kept + static_cast<std::size_t>(kInflateBytes));
+    stream_.next_out = reinterpret_cast<Bytef*>(window_.data() + kept);
+    stream_.avail_out = static_cast<uInt>(kInflateBytes);
+    while (code_ == Z_OK && stream_.avail_out > 0) {
+      if (stream_.avail_in == 0 && !read_packed()) break;
+      code_ = inflate(&stream_, Z_NO_FLUSH);
+    }
+    window_.resize(window_.size() - stream_.avail_out);
+    good_ = code_ == Z_OK && stream_.avail_out == 0 && begin_ + std::ssize(window_) <= most_;
+  }
+
+  bool read_packed() {
+    const std::int64_t bytes = std::min(kInflateBytes, packed_.bytes - done_);
+    from_.resize(static_cast<std::size_t>(bytes));
+    if (bytes == 0 || input_.read(from_.data(), bytes, packed_.content + done_) != bytes)
+      return false;
+    done_ += bytes;
+    stream_.next_in = reinterpret_cast<Bytef*>(from_.data());
+    stream_.avail_in = static_cast<uInt>(bytes);
+    return true;
+  }
+
+  InputFile& input_;
+  MatElement packed_;
+  std::int64_t most_, done_ = 0, begin_ = 0;  ///< begin_: offset of the window
+  z_stream stream_{};
+  std::string window_, from_;
+  int code_ = Z_OK;
+  bool good_ = false;
+};
+
+bool is_sound_unpacked(InputFile& input, const MatElement& packed, bool big_endian) {
+  constexpr std::int64_t kTagBytes = 8;
+  Inflater inflater(input, packed);
+  const MatLayout layout(
+      [&](void* to, std::int64_t bytes, std::int64_t at) { return inflater.read(to, bytes, at); },
+      big_endian);
+  const auto matrix = layout.element(0, kMaxInflated + kTagBytes);
+  if (!matrix || matrix->type != kMatrix || !layout.is_sound(*matrix, 1)) return false;
+  const auto unpacked = inflater.finish();
+  return unpacked && matrix->next <= *unpacked;
 }
 
 /// Returns the number of variables of a MATLAB file of level 5. Returns nullopt when the file is
@@ -152,8 +193,7 @@ std::optional<std::size_t> count_in_level_5(InputFile& input, bool big_endian) {
     const auto top = layout.element(at, input.size());
     if (!top) return std::nullopt;
     if (top->type == kCompressed) {
-      const auto bytes = inflated(input, *top);
-      if (!bytes || !is_sound_unpacked(*bytes, big_endian)) return std::nullopt;
+      if (!is_sound_unpacked(input, *top, big_endian)) return std::nullopt;
     } else if (top->type != kMatrix || !layout.is_sound(*top, 1)) {
       return std::nullopt;
     }
@@ -252,6 +292,12 @@ std::size_t all_elements_of(const matvar_t& v) {
   return sum;
 }
 
+/// Returns true for a variable that MATLAB adds for tables, time stamps, strings and objects. It
+/// has no name in level 5, and "#subsystem#" in 7.3.
+bool is_own(const matvar_t& v) {
+  return v.name == nullptr || v.name[0] == '\0' || v.name[0] == '#';
+}
+
 }  // namespace
 
 MatLevel mat_level(std::string_view head) {
@@ -295,6 +341,7 @@ struct MatFileReader::State {
     added.holder = v;
     const std::size_t count = elements_of(*v);
     if (v->rank == 2) added.rows = v->dims[0], added.columns = v->dims[1];
+    added.is_object = v->class_type == MAT_C_OBJECT || v->class_type == MAT_C_OPAQUE;
     added.is_numbers = has_numbers(*v) && v->isComplex == 0 && v->rank == 2 && count > 0;
     added.may_be_meant =
         !added.is_numbers && count > 1 && (has_numbers(*v) || v->class_type == MAT_C_SPARSE);
@@ -342,7 +389,8 @@ std::optional<std::vector<MatVariable>> MatFileReader::variables(FileProblems& p
   if (!state_->file) return std::nullopt;
   while (matvar_t* const v = Mat_VarReadNextInfo(state_->file.get())) {
     state_->tops.emplace_back(v);
-    if (state_->list(v, v->name != nullptr ? v->name : "?", 1, out)) continue;
+    if (is_own(*v)) continue;
+    if (state_->list(v, v->name, 1, out)) continue;
     problems.add(0, fmt::format("more than {} variables, or structs nested more than {} deep",
                                 kMaxVariables, kDeepestStruct));
     return std::nullopt;

@@ -31,6 +31,7 @@ struct MatVariable {
   std::size_t rows = 0, columns = 0;
   bool is_numbers = false;    ///< real numbers, dense, in two dimensions, not empty
   bool may_be_meant = false;  ///< other numbers: complex, sparse, of more dimensions
+  bool is_object = false;     ///< a table, timetable, string or other object
 
   std::size_t top = 0;         ///< for MatFileReader: index of the variable in the file
   matvar_t* holder = nullptr;  ///< for MatFileReader: holds the numbers

@@ -69,14 +69,15 @@ std::optional<At2Header> read_at2_header(LineReader& lines, FileProblems& proble
 }
 
 /// Splits fields such as "-.123E-02-.456E-02": a sign begins the next number unless it follows an
-/// E.
+/// E or D.
 void split_stuck(std::string_view line, std::vector<std::string_view>& fields) {
   std::vector<std::string_view> blanks;
   split_blanks(line, blanks);
   fields.clear();
   for (std::string_view field : blanks) {
     for (std::size_t i = 1; i < field.size();) {
-      const bool begins = field[i] == '-' && field[i - 1] != 'E' && field[i - 1] != 'e';
+      const bool begins =
+          field[i] == '-' && std::string_view("EeDd").find(field[i - 1]) == std::string_view::npos;
       if (begins) {
         fields.push_back(field.substr(0, i));
         field.remove_prefix(i);
@@ -95,9 +96,14 @@ std::optional<Record> read_at2(FileProblems& problems) {
   if (!header) return std::nullopt;
   RecordBuilder builder({name_of_file(problems.path())}, problems);
   std::vector<std::string_view> fields;
-  std::int64_t count = 0;
+  std::int64_t count = 0, left_out = 0;
   for (std::string_view line; lines.next(line) && !problems.full() && !builder.full();) {
     split_stuck(line, fields);
+    if (!lines.line_ended() && !fields.empty()) {
+      builder.note(lines.left_out_note("number"));
+      fields.pop_back();
+      left_out = 1;
+    }
     for (const std::string_view field : fields) {
       const auto value = parse_sample(field);
       if (!value)
@@ -107,9 +113,9 @@ std::optional<Record> read_at2(FileProblems& problems) {
       builder.add(lines.number(), static_cast<double>(count++) * header->step_s, {&accel_mps2, 1});
     }
   }
-  if (!problems.any() && count != header->points)
-    problems.add(
-        4, fmt::format("AT2: NPTS is {} but the file holds {} values", header->points, count));
+  if (!problems.any() && count + left_out != header->points)
+    problems.add(4, fmt::format("AT2: NPTS is {} but the file holds {} values", header->points,
+                                count + left_out));
   return builder.finish();
 }
 

@@ -21,6 +21,8 @@ constexpr double kMinRateOfSeconds_hz = 5;
 /// Samples are closer than this (9 s) when times are days since 1900, as in spreadsheets.
 constexpr double kStepOfDays = 1e-4;
 
+constexpr std::int64_t kToa5Lines = 4;  ///< header lines
+
 /// The header of a table and its surroundings.
 struct TableLayout {
   char delimiter = ',';
@@ -48,20 +50,37 @@ std::optional<Cells> cells_of(const LineReader& lines, std::string_view line, ch
   return cells;
 }
 
-/// Finds the header: the first line with a time column, or the last line above the numbers. Leaves
+/// Names the first column "time" if it has no title, as the index in a table of pandas, and `row`
+/// begins with a time stamp. Another time column, or a step in the options, leaves it an index.
+void name_index(TableLayout& layout, std::string_view row, const RecordOptions& options) {
+  if (layout.titles.size() < 2 || !layout.titles[0].empty()) return;
+  if (!options.time_column.empty() || options.step_s) return;
+  if (std::any_of(layout.titles.begin(), layout.titles.end(), is_time_title)) return;
+  const auto cells = split_cells(row, layout.delimiter);
+  if (cells && parse_time_stamp(cells->front())) layout.titles[0] = "time";
+}
+
+/// Finds the header: the first line with a time column, or the last line above the numbers. TOA5,
+/// of Campbell loggers, has four lines: the logger, titles, units, and kinds of processing. Leaves
 /// `line` at the first row; sets `at_row` to false when there is no row.
 std::optional<TableLayout> find_layout(LineReader& lines, std::string_view& line, bool& at_row,
                                        const RecordOptions& options, FileProblems& problems) {
   TableLayout layout;
-  bool found = false;
+  bool found = false, toa5 = false;
   std::int64_t texts = 0;
   for (at_row = false; !at_row && lines.next(line);) {
-    if (is_comment(line)) continue;
+    line = without_header_mark(line);
+    if (is_comment(line, found ? layout.delimiter : '\0')) continue;
     const char delimiter = found ? layout.delimiter : delimiter_of(line);
     const auto cells = cells_of(lines, line, delimiter, problems);
     if (!cells) return std::nullopt;
-    const bool units =
-        layout.units.empty() && cells->size() == layout.titles.size() && is_units_line(*cells);
+    toa5 = toa5 || (lines.number() == 1 && is_toa5(line));
+    if (toa5 && (lines.number() == 1 || lines.number() == kToa5Lines)) {
+      layout.last_header_line = lines.number();
+      continue;
+    }
+    const bool units = layout.units.empty() && cells->size() == layout.titles.size() &&
+                       (toa5 || is_units_line(*cells));
     at_row = begins_data(cells->front()) || (found && !units);
     if (at_row) break;
     layout.last_header_line = lines.number();
@@ -78,6 +97,7 @@ std::optional<TableLayout> find_layout(LineReader& lines, std::string_view& line
   if (problems.any()) return std::nullopt;
   if (layout.titles.empty())
     return problems.add(0, "there is no header: write the names of the columns above the numbers");
+  if (at_row) name_index(layout, line, options);
   const auto row = at_row ? split_cells(line, ' ') : std::nullopt;
   if (layout.delimiter == ' ' && row && row->size() != layout.titles.size())
     return problems.add(
@@ -95,7 +115,7 @@ std::optional<char> find_decimal(const TableLayout& layout, FileProblems& proble
   LineReader lines(problems);
   DecimalScan scan;
   for (std::string_view line; lines.next(line);) {
-    if (lines.number() <= layout.last_header_line || is_comment(line)) continue;
+    if (lines.number() <= layout.last_header_line || is_comment(line, layout.delimiter)) continue;
     const auto cells = split_cells(line, layout.delimiter);
     if (!cells) continue;
     for (const std::string& cell : *cells) scan.add(lines.number(), cell);
@@ -276,10 +296,9 @@ std::optional<Record> read_csv(const RecordOptions& options, FileProblems& probl
   const char delimiter = layout->delimiter;
   TableReader reader(std::move(*layout), std::move(*columns), options, problems);
   for (; at_row && !reader.full(); at_row = lines.next(line)) {
-    if (is_comment(line)) continue;
+    if (is_comment(line, delimiter)) continue;
     if (!lines.line_ended()) {
-      reader.note(fmt::format("line {}: the last row has no line end and may be cut off: left out",
-                              lines.number()));
+      reader.note(lines.left_out_note("row"));
       continue;
     }
     auto cells = cells_of(lines, line, delimiter, problems);

@@ -4,8 +4,6 @@
 #include <libmseed.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 
 #include <fmt/core.h>
@@ -17,43 +15,16 @@
 #include "drivers/formats/mat_variables.h"
 #include "drivers/formats/record_formats.h"
 #include "drivers/formats/table.h"
+#include "drivers/formats/unread_formats.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/stations/station_formats.h"
 
 namespace framewatch::drivers {
 namespace {
 
-struct KnownUnread {
-  std::string_view begins;
-  std::string_view what;
-};
-
-constexpr std::string_view kInstead =
-    "export it as CSV or MATLAB .mat from the program that wrote it";
-constexpr std::array kUnread = {
-    KnownUnread{"MDF     ", "ASAM MDF"},
-    KnownUnread{"UnFinMF ", "ASAM MDF, unfinished"},
-    KnownUnread{"\x89HDF\r\n\x1a\n", "HDF5, but not a MATLAB file"},
-};
-
-/// Returns true if `head` begins a Universal File: a line of -1, then the number of a data set (58,
-/// 58b, 151).
-bool is_universal_file(std::string_view head) {
-  std::array<std::string_view, 2> lines;
-  for (std::string_view& line : lines) {
-    const std::size_t end = head.find('\n');
-    if (end == std::string_view::npos) return false;
-    line = trimmed(head.substr(0, head.find_first_of("\r\n")));
-    head.remove_prefix(end + 1);
-  }
-  std::string_view number = lines[1].substr(0, lines[1].find(' '));
-  if (number.ends_with('b')) number.remove_suffix(1);
-  return lines[0] == "-1" && parse_integer(number).value_or(0) > 0;
-}
-
 std::string bytes_of(FileProblems& problems) {
   GzipInput file(problems.path());
-  std::string head(kSacHeaderBytes, '\0');
+  std::string head(kHeadBytes, '\0');
   const std::int64_t got = file.read(head.data(), std::ssize(head));
   if (!file.error().empty()) problems.add(0, file.error());
   head.resize(static_cast<std::size_t>(std::max<std::int64_t>(got, 0)));
@@ -61,23 +32,14 @@ std::string bytes_of(FileProblems& problems) {
 }
 
 /// Returns the format of a binary file by its first bytes; nullopt when the file may be text. A
-/// known format that is not supported (MDF, UFF, HDF5, miniSEED 3, full SEED) becomes a problem
-/// that says what to do.
+/// known format that is not supported becomes a problem that says what to do.
 std::optional<RecordFormat> format_by_signature(FileProblems& problems) {
   const std::string head = bytes_of(problems);
   if (mat_level(head) != MatLevel::none) return RecordFormat::mat;
   if (head.size() >= 48 && MS_ISVALIDHEADER(head.data())) return RecordFormat::mseed;
   if (is_sac_header(head)) return RecordFormat::sac;
-  std::string what;
-  for (const KnownUnread& known : kUnread)
-    if (head.starts_with(known.begins)) what = known.what;
-  if (is_universal_file(head)) what = "a Universal File (UFF, UNV)";
-  if (!what.empty())
-    problems.add(0, fmt::format("is {}, which is not supported: {}", what, kInstead));
-  if (head.starts_with("MS\x03"))
-    problems.add(0, "is miniSEED 3, which is not supported: write miniSEED 2");
-  if (head.starts_with("000001V "))
-    problems.add(0, "is a full SEED volume: extract its data records as miniSEED 2");
+  const std::string unread = unread_format(head);
+  if (!unread.empty()) problems.add(0, unread);
   return std::nullopt;
 }
 
@@ -114,6 +76,9 @@ RecordFormat format_of_numbers(std::int64_t first_line, std::size_t width, FileP
 RecordFormat format_of_network(std::string_view first_line) {
   if (holds(first_line, "(Format v")) return RecordFormat::cosmos;
   if (first_line.starts_with("Origin Time")) return RecordFormat::knet;
+  if (is_geonet_title(first_line)) return RecordFormat::geonet;
+  if (is_csmip_title(first_line)) return RecordFormat::csmip;
+  if (is_esm_title(first_line)) return RecordFormat::esm;
   return is_smc_title(first_line) ? RecordFormat::smc : RecordFormat::detect;
 }
 
@@ -130,8 +95,9 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
       return format_of_network(line);
     if (holds(line, "PacketCounter") && holds(line, "SampleTimeFine")) return RecordFormat::xsens;
     if (lines.number() <= 4 && holds(line, "NPTS")) return RecordFormat::at2;
-    if (is_comment(line) || width > 0) continue;
-    if (is_table_header(line, options)) return RecordFormat::csv;
+    line = without_header_mark(line);
+    if (is_comment(line, '\0') || width > 0) continue;
+    if (is_toa5(line) || is_table_header(line, options)) return RecordFormat::csv;
     // A line of text may be the header of an AT2 or Xsens file: read on.
     split_blanks(line, fields);
     const auto cells = split_cells(line, delimiter_of(line));
@@ -149,9 +115,8 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
     problems.add(
         0,
         "no known record format: not a table with a header such as time_s,<channel names>, "
-        "not what a strong-motion network publishes (COSMOS, SMC, K-NET, SAC, miniSEED 2), not "
-        "PEER "
-        "AT2, not Xsens DOT, not MATLAB, not rows of numbers");
+        "not what a strong-motion network publishes (COSMOS, CSMIP, SMC, K-NET, ESM, GeoNet, SAC, "
+        "miniSEED 2), not PEER AT2, not Xsens DOT, not MATLAB, not rows of numbers");
   else
     return text ? RecordFormat::csv : format_of_numbers(first_line, width, problems);
   return RecordFormat::detect;
@@ -180,8 +145,8 @@ void check_declared(RecordFormat format, const RecordOptions& options, FileProbl
     problems.add(0, "the file has its own time: --step does not apply");
   if (!options.time_column.empty() || options.time_unit_s || options.decimal)
     problems.add(0, "--time, --time-unit and --decimal are for tables with a header");
-  if (options.zone_min && format != RecordFormat::cosmos)
-    problems.add(0, "--zone is for tables with a header, and for COSMOS");
+  if (options.zone_min && format != RecordFormat::cosmos && format != RecordFormat::csmip)
+    problems.add(0, "--zone is for tables with a header, COSMOS and CSMIP");
   if (!options.columns.empty() && format != RecordFormat::mseed)
     problems.add(0, "--columns is for tables with a header, MATLAB files and miniSEED");
 }
@@ -223,6 +188,12 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
       return read_smc(problems);
     case RecordFormat::knet:
       return read_knet(problems);
+    case RecordFormat::csmip:
+      return read_csmip(options, problems);
+    case RecordFormat::esm:
+      return read_esm(problems);
+    case RecordFormat::geonet:
+      return read_geonet(problems);
     case RecordFormat::sac:
       return read_sac(options, problems);
     case RecordFormat::columns:

@@ -67,6 +67,12 @@ class MatTable {
                           [](const MatColumn& c) { return c.title == kOwnTimeOfMat; });
     const bool own = !columns_.empty() && columns_.front().title == kOwnTimeOfMat;
     if (columns_.empty()) problems_.add(0, "there are no numbers that can be a channel");
+    if (columns_.empty() && std::any_of(variables_.begin(), variables_.end(),
+                                        [](const MatVariable& v) { return v.is_object; }))
+      problems_.add(0,
+                    "tables and timetables are MATLAB's own objects: save their columns instead, "
+                    "for example t = seconds(tt.Time - tt.Time(1)); acc = tt.Variables; "
+                    "save('FILE.mat', 't', 'acc', '-v7')");
     if (!own && !options_.unit_mps2 && !columns_.empty())
       problems_.add(0,
                     "a MATLAB file does not say its unit: declare it with --unit g, mg, gal or "
@@ -233,13 +239,17 @@ std::optional<Record> read_mat_table(const RecordOptions& options, FileProblems&
       problems.add(0, fmt::format("{} has {} samples, {} has {}", show_text(columns[c].title),
                                   columns[c].samples, show_text(columns[used.front()].title),
                                   columns[used.front()].samples));
+  const std::size_t samples = columns[used.front()].samples;
+  if (samples > RecordBuilder::kMaxValues / (names.size() + 1))
+    problems.add(
+        0, fmt::format("{} has {} samples: a record holds at most {} values, with times",
+                       show_text(columns[used.front()].title), samples, RecordBuilder::kMaxValues));
   if (problems.any()) return std::nullopt;
   for (const std::size_t c : used)
     if (!file.load(*columns[c].variable, problems)) return std::nullopt;
   RecordBuilder builder(names, problems);
   for (const std::string& note : chosen->notes) builder.note(note);
   std::vector<double> row(names.size());
-  const std::size_t samples = columns[used.front()].samples;
   for (std::size_t i = 0; i < samples && !builder.full() && !problems.full(); ++i) {
     const double time_s = chosen->time ? sample_of(columns[*chosen->time], i) * chosen->time_unit_s
                                        : static_cast<double>(i) * options.step_s.value_or(1);

@@ -35,6 +35,10 @@ std::optional<Record> read_columns(double unit_mps2, FileProblems& problems) {
        lines.next(line) && !problems.full() && !(builder && builder->full());) {
     split_blanks(line, fields);
     if (fields.empty() || fields.front().front() == '#') continue;
+    if (builder && !lines.line_ended()) {
+      builder->note(lines.left_out_note("row"));
+      continue;
+    }
     if (!builder && fields.size() < 2) {
       problems.add(lines.number(), "a row needs a time and an acceleration, but has one value");
       break;
@@ -90,6 +94,10 @@ std::optional<Record> read_rows(double unit_mps2, double step_s, FileProblems& p
           short_line > 0 ? short_line : lines.number(),
           fmt::format("ragged: the first row has {} values, only the last may have fewer", width));
     short_line = fields.size() < width ? lines.number() : 0;
+    if (!lines.line_ended()) {
+      builder.note(lines.left_out_note("number"));
+      fields.pop_back();
+    }
     for (const std::string_view field : fields) {
       const auto value = parse_sample(field);
       if (!value)

@@ -116,6 +116,7 @@ class XsensReader {
   }
 
   bool full() const { return builder_.full(); }
+  void note(const std::string& text) { builder_.note(text); }
 
  private:
   void check_counter(std::string_view text) {
@@ -144,6 +145,10 @@ std::optional<Record> read_xsens(FileProblems& problems) {
   std::vector<std::string_view> fields;
   for (std::string_view line; lines.next(line) && !problems.full() && !reader.full();) {
     if (trimmed(line).empty()) continue;
+    if (!lines.line_ended()) {
+      reader.note(lines.left_out_note("row"));
+      continue;
+    }
     split_commas(line, fields);
     if (fields.size() == columns->count)
       reader.add(lines.number(), fields);

@@ -27,6 +27,9 @@ bool is_blank(char c) {
 /// The first title in tables of framewatch itself: all other columns are in m/s^2.
 constexpr std::string_view kOwnTime = "time_s";
 
+/// Units of the columns TIMESTAMP and RECORD of TOA5 files.
+constexpr std::string_view kToa5TimeStamp = "TS", kToa5RecordNumber = "RN";
+
 constexpr std::array<std::string_view, 16> kTimes = {
     "t",         "time",     "timestamp",    "datetime",     "date",       "utc",
     "seconds",   "sec",      "elapsedtime",  "relativetime", "sampletime", "epoch",
@@ -100,7 +103,7 @@ void find_time_unit(const ColumnTitle& title, const RecordOptions& options, std:
                     TableColumns& out, FileProblems& problems) {
   const std::string name = squeeze(title.name);
   std::optional<double> said;
-  if (title.unit) {
+  if (title.unit && title.unit != kToa5TimeStamp) {
     said = seconds_per(*title.unit);
     if (!said)
       problems.add(line, fmt::format("{}: times are in s, ms, us or ns, not in {}",
@@ -187,9 +190,21 @@ std::optional<std::vector<std::string>> split_cells(std::string_view line, char 
   }
 }
 
-bool is_comment(std::string_view line) {
+bool is_comment(std::string_view line, char delimiter) {
   line = trimmed(line);
-  return line.empty() || line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//";
+  if (line.empty() || line[0] == '#' || line[0] == '%' || line.substr(0, 2) == "//") return true;
+  if (line[0] != ';' || delimiter != '\0') return line[0] == ';' && delimiter != ';';
+  return line.find(';', 1) == std::string_view::npos && line.find(',') != std::string_view::npos;
+}
+
+bool is_toa5(std::string_view first_line) {
+  return first_line.starts_with("\"TOA5\",") || first_line.starts_with("TOA5,");
+}
+
+std::string_view without_header_mark(std::string_view line) {
+  constexpr std::string_view kMark = ";headers,";
+  const bool marked = squeeze(line.substr(0, kMark.size())) == kMark;
+  return marked ? trimmed(line.substr(kMark.size())) : line;
 }
 
 std::optional<double> parse_cell(std::string_view text, char decimal) {
@@ -280,6 +295,14 @@ std::optional<TableColumns> table_columns(const std::vector<std::string>& texts,
   std::vector<std::string> names;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     if (out.time == i) continue;
+    if (i == 0 && texts[i].empty() && texts.size() > 1) {
+      out.notes.push_back("the first column has no title: an index, left out");
+      continue;
+    }
+    if (titles[i].unit == kToa5RecordNumber) {
+      out.notes.push_back(fmt::format("{}: record numbers, left out", show_text(texts[i])));
+      continue;
+    }
     if (!options.columns.empty() && !is_chosen(options.columns, titles[i], texts[i])) {
       out.notes.push_back(fmt::format("{}: not one of --columns, left out", show_text(texts[i])));
       continue;

@@ -22,8 +22,17 @@ char delimiter_of(std::string_view line);
 /// "" for a quote inside them. Returns nullopt when a quote is not closed.
 std::optional<std::vector<std::string>> split_cells(std::string_view line, char delimiter);
 
-/// Returns true if a line is blank or begins with '#', '%' or "//".
-bool is_comment(std::string_view line);
+/// Returns true if a line is blank or begins with '#', '%' or "//". `delimiter` is the table's;
+/// above its header, where it is not yet known, it is '\0'. A line that begins with ';' is a
+/// comment when the table has another delimiter; above the header, when it holds commas and no
+/// further ';'.
+bool is_comment(std::string_view line, char delimiter);
+
+/// Returns true if this first line begins a TOA5 file of a Campbell logger.
+bool is_toa5(std::string_view first_line);
+
+/// Returns a line without the mark ";Headers," by which GCDC loggers put the header into a comment.
+std::string_view without_header_mark(std::string_view line);
 
 /// Parses what parse_sample() parses, with the decimal sign of the file, and "NA", "N/A", "#N/A"
 /// and "null" as missing values (NaN). Returns nullopt for any other text.

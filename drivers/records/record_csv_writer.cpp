@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "drivers/records/record_csv_writer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include <fmt/format.h>
 
+#include "drivers/files/file_problems.h"
+
 namespace framewatch::drivers {
 
 bool RecordCsvWriter::open(const std::string& path, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    if (name.find_first_of(",\"\r\n") == std::string::npos) continue;
-    error_ = fmt::format("channel name '{}' must not contain a comma, quote or line end", name);
+    const bool bad = std::any_of(name.begin(), name.end(), [](unsigned char c) {
+      return c == ',' || c == '"' || c < 0x20 || c == 0x7f;
+    });
+    if (!bad) continue;
+    error_ = fmt::format("channel name {} must not contain commas, quotes or control characters",
+                         show_text(name));
     return false;
   }
   line_ = "time_s";

@@ -9,7 +9,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, RecordFormat>, 13> kFormats = {{
+constexpr std::array<std::pair<std::string_view, RecordFormat>, 16> kFormats = {{
     {"detect", RecordFormat::detect},
     {"csv", RecordFormat::csv},
     {"at2", RecordFormat::at2},
@@ -23,6 +23,9 @@ constexpr std::array<std::pair<std::string_view, RecordFormat>, 13> kFormats = {
     {"smc", RecordFormat::smc},
     {"knet", RecordFormat::knet},
     {"sac", RecordFormat::sac},
+    {"csmip", RecordFormat::csmip},
+    {"esm", RecordFormat::esm},
+    {"geonet", RecordFormat::geonet},
 }};
 
 }  // namespace

@@ -20,7 +20,10 @@ enum class RecordFormat {
   cosmos,
   smc,
   knet,
-  sac
+  sac,
+  csmip,
+  esm,
+  geonet
 };
 
 /// Declares what a record file does not say itself. It is a problem to declare something that the
@@ -42,7 +45,7 @@ struct RecordOptions {
 /// Returns the format of a name in record_format_names(), "two-columns" or "detect". Returns
 /// nullopt for any other name.
 std::optional<RecordFormat> record_format(std::string_view name);
-/// Returns the names of all formats for a message: "csv, at2, ... or sac".
+/// Returns the names of all formats for a message: "csv, at2, ... or geonet".
 std::string record_format_names();
 
 }  // namespace framewatch::drivers

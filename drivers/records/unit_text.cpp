@@ -19,11 +19,14 @@ struct NamedUnit {
 };
 
 constexpr std::array kAccelUnits = {
-    NamedUnit{"g", 9.80665},   NamedUnit{"mg", 9.80665e-3}, NamedUnit{"gal", 0.01},
-    NamedUnit{"mps2", 1},      NamedUnit{"m/s2", 1},        NamedUnit{"m/s/s", 1},
-    NamedUnit{"m/sec2", 1},    NamedUnit{"ms-2", 1},        NamedUnit{"cm/s2", 0.01},
-    NamedUnit{"cm/s/s", 0.01}, NamedUnit{"cm/sec2", 0.01},  NamedUnit{"cms-2", 0.01},
-    NamedUnit{"mm/s2", 0.001}, NamedUnit{"mm/s/s", 0.001},  NamedUnit{"mms-2", 0.001},
+    NamedUnit{"g", 9.80665},   NamedUnit{"mg", 9.80665e-3},   NamedUnit{"gal", 0.01},
+    NamedUnit{"mps2", 1},      NamedUnit{"m/s2", 1},          NamedUnit{"m/s/s", 1},
+    NamedUnit{"m/sec2", 1},    NamedUnit{"ms-2", 1},          NamedUnit{"cm/s2", 0.01},
+    NamedUnit{"cm/s/s", 0.01}, NamedUnit{"cm/sec2", 0.01},    NamedUnit{"cms-2", 0.01},
+    NamedUnit{"mm/s2", 0.001}, NamedUnit{"mm/s/s", 0.001},    NamedUnit{"mms-2", 0.001},
+    NamedUnit{"um/s2", 1e-6},  NamedUnit{"um/s/s", 1e-6},     NamedUnit{"ums-2", 1e-6},
+    NamedUnit{"nm/s2", 1e-9},  NamedUnit{"nm/s/s", 1e-9},     NamedUnit{"nms-2", 1e-9},
+    NamedUnit{"m/sec/sec", 1}, NamedUnit{"cm/sec/sec", 0.01},
 };
 constexpr std::array kForceUnits = {NamedUnit{"n", 1}, NamedUnit{"kn", 1e3}};
 constexpr std::array kTimeUnits = {
@@ -31,8 +34,9 @@ constexpr std::array kTimeUnits = {
     NamedUnit{"msec", 1e-3}, NamedUnit{"us", 1e-6}, NamedUnit{"ns", 1e-9},  NamedUnit{"seconds", 1},
 };
 
-/// Returns a unit in lower case, without blanks and signs for powers and products: "m / s^2",
-/// "m/s\u00b2" and "m/s**2" become "m/s2", "m s^-2" becomes "ms-2". The micro sign becomes "u".
+/// Returns a unit in lower case, without blanks, parentheses, and signs for powers and products:
+/// "m / s^2", "m/s\u00b2" and "m/(s**2)" become "m/s2", "m s^-2" becomes "ms-2". The micro sign
+/// becomes "u".
 std::string plain_unit(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -42,7 +46,7 @@ std::string plain_unit(std::string_view text) {
       plain += '2';
     else if (c == 0xB5 || c == 0xBC)
       plain += 'u';
-    else if (c != ' ' && c != '^' && c != '*' && c != '.' && c != 0xB7)
+    else if (std::string_view(" ^*.()\xB7").find(text[i]) == std::string_view::npos)
       plain += static_cast<char>(std::tolower(c));
   }
   return plain;

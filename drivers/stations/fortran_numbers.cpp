@@ -58,6 +58,10 @@ std::optional<std::vector<double>> read_fortran_numbers(LineReader& lines,
     for (std::size_t i = 0; i < on_line; ++i) {
       const std::size_t begin = std::min(i * format.width, line.size());
       const std::string_view field = trimmed(line.substr(begin, format.width));
+      if (!lines.line_ended() && !field.empty() && line.size() < begin + format.width)
+        return problems.add(lines.number(),
+                            fmt::format("{}: the file is cut off inside number {}, {}", what,
+                                        numbers.size() + 1, show_text(field)));
       const auto number = parse_number(field);
       if (!number || !std::isfinite(*number))
         return problems.add(

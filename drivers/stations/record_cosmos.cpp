@@ -310,7 +310,8 @@ class CosmosReader {
   std::vector<Record> read() {
     std::vector<Record> records;
     for (std::string_view line; !problems_.any() && lines_.next(line);) {
-      if (trimmed(line).empty() || holds(line, "End-of-data")) continue;
+      const std::string_view words = trimmed(line);
+      if (words.empty() || words.starts_with(kEndOfChannel) || holds(line, "End-of-data")) continue;
       if (holds(line, "(Format v")) {
         header_ = read_cosmos_header(lines_, line, problems_);
         continue;
@@ -411,14 +412,7 @@ class CosmosReader {
 }  // namespace
 
 std::optional<Record> read_cosmos(const RecordOptions& options, FileProblems& problems) {
-  std::vector<Record> records = CosmosReader(options, problems).read();
-  if (problems.any()) return std::nullopt;
-  if (records.size() == 1) return std::move(records.front());
-  std::vector<Problem> found;
-  const std::vector<std::string> where(records.size(), problems.path());
-  auto merged = merge_records(std::move(records), where, MergeSpan::common, found);
-  for (const Problem& problem : found) problems.add(0, problem.message);
-  return merged;
+  return merge_channels(CosmosReader(options, problems).read(), problems);
 }
 
 }  // namespace framewatch::drivers

@@ -2,6 +2,7 @@
 // Strong motion of Japan's K-NET and KiK-net (NIED): 17 lines of names and values, then whole
 // numbers. https://www.kyoshin.bosai.go.jp/kyoshin/man/knetform_en.html
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/core.h>
@@ -62,6 +63,14 @@ class KnetReader {
       }
     }
     if (problems_.any()) return std::nullopt;
+    const bool unended = !lines_.line_ended() && !accel_mps2.empty();
+    if (unended) {
+      accel_mps2.pop_back();
+      channel.treatment += "; " + lines_.left_out_note("number");
+    }
+    const std::size_t left_out = unended ? 1 : 0;
+    check_duration(rate_hz, accel_mps2.size() + left_out, channel.treatment);
+    if (problems_.any()) return std::nullopt;
     return station_record(channel, accel_mps2, kKnetHeaderLines + 1,
                           std::max<std::size_t>(1, per_line), problems_);
   }
@@ -99,6 +108,20 @@ class KnetReader {
     const auto value = parse_number(trimmed(std::string_view(text).substr(0, text.find(unit))));
     if (!value && !problems_.any()) complain(title, "must be a number");
     return value.value_or(0);
+  }
+
+  /// Reports fewer samples than the header's duration has: the file is cut off. Appends more of
+  /// them to `treatment`.
+  void check_duration(double rate_hz, std::size_t samples, std::string& treatment) {
+    const double duration_s = number_before("Duration Time", "s");
+    const double stated = std::round(duration_s * rate_hz);
+    if (static_cast<double>(samples) < stated)
+      complain("Duration Time",
+               fmt::format("are {:.0f} samples at {:g} Hz, but the file has {}: it "
+                           "is cut off",
+                           stated, rate_hz, samples));
+    else if (static_cast<double>(samples) > stated)
+      treatment += fmt::format("; {} samples, the header's duration has {:.0f}", samples, stated);
   }
 
   /// Returns the m/s^2 of one count, from "3920(gal)/6182761".

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstddef>
@@ -231,13 +232,14 @@ class SeedRecords {
     char* const begin = buffer_.data() + at_;
     const int bytes = static_cast<int>(buffer_.size() - at_);
     MSRecord* parsed = nullptr;
-    const int code = msr_parse(begin, bytes, &parsed, 0, 1, 0);
+    const int code = msr_parse(begin, bytes, &parsed, length_at(begin, bytes), 1, 0);
     SeedRecord record(parsed);
     if (code != MS_NOERROR) {
       problems_.add(0, fmt::format("byte {}: {}", offset(), why_not(code)));
       return nullptr;
     }
     at_ += static_cast<std::size_t>(record->reclen);
+    length_ = record->reclen;
     return record;
   }
 
@@ -249,6 +251,16 @@ class SeedRecords {
  private:
   /// Bytes of the longest record and the header behind it.
   static constexpr std::int64_t kAhead = std::int64_t{MAXRECLEN} + 64;
+
+  /// Returns the length of the record at `begin`; 0 leaves it to the library, which reads it from
+  /// blockette 1000 or finds the next header. A last record without that blockette has the length
+  /// of those before; if it is the only one, it fills the file.
+  int length_at(const char* begin, int bytes) const {
+    const bool unknown = ended_ && bytes >= MINRECLEN && ms_detect(begin, bytes) == 0;
+    if (!unknown) return 0;
+    if (length_ > 0) return length_ <= bytes ? length_ : 0;
+    return std::has_single_bit(static_cast<unsigned>(bytes)) ? bytes : 0;
+  }
 
   bool fill() {
     const std::int64_t left = std::ssize(buffer_) - static_cast<std::int64_t>(at_);
@@ -281,6 +293,7 @@ class SeedRecords {
   std::string buffer_;
   std::size_t at_ = 0;
   std::int64_t read_ = 0;
+  int length_ = 0;  ///< bytes of the last record; 0: none yet
   bool ended_ = false;
 };
 

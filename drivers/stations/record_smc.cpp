@@ -27,7 +27,7 @@ enum class SmcInteger : std::size_t {
   minute = 4,
   second = 5,
   millisecond = 6,
-  channel = 9,
+  channel = 8,
   from_up_deg = 12,
   azimuth_deg = 13,
   comments = 15,
@@ -35,7 +35,7 @@ enum class SmcInteger : std::size_t {
   problem = 17,
   floor = 24,
 };
-constexpr std::size_t kSmcIntegers = 48, kSmcReals = 50, kSmcRate_hz = 1;
+constexpr std::size_t kSmcIntegers = 48, kSmcReals = 50, kSmcUndefined = 0, kSmcRate_hz = 1;
 
 struct SmcHeader {
   std::vector<std::string> text;
@@ -114,6 +114,10 @@ std::optional<SmcHeader> read_smc_header(LineReader& lines, FileProblems& proble
   const auto reals = read_fortran_numbers(lines, {5, 15}, kSmcReals, "SMC: real numbers", problems);
   if (!reals) return std::nullopt;
   header.rate_hz = (*reals)[kSmcRate_hz];
+  if (header.rate_hz == (*reals)[kSmcUndefined])
+    return problems.add(kSmcTextLines + 7,
+                        "SMC: the header has no sampling rate: the record was digitized at uneven "
+                        "times, which is not supported; use the network's evenly sampled record");
   if (!(header.rate_hz > 0) || header.rate_hz > RecordBuilder::kMaxRateHz)
     problems.add(kSmcTextLines + 7,
                  fmt::format("SMC: {:g} samples per second is not a valid rate", header.rate_hz));

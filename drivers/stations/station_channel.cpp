@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
@@ -86,6 +87,16 @@ std::optional<Record> station_record(const StationChannel& channel,
     record->headers = {channel.header};
   }
   return record;
+}
+
+std::optional<Record> merge_channels(std::vector<Record> records, FileProblems& problems) {
+  if (problems.any()) return std::nullopt;
+  if (records.size() == 1) return std::move(records.front());
+  std::vector<Problem> found;
+  const std::vector<std::string> where(records.size(), problems.path());
+  auto merged = merge_records(std::move(records), where, MergeSpan::common, found);
+  for (const Problem& problem : found) problems.add(0, problem.message);
+  return merged;
 }
 
 }  // namespace framewatch::drivers

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drivers/files/file_problems.h"
@@ -29,6 +30,13 @@ struct StationChannel {
 std::optional<Record> station_record(const StationChannel& channel,
                                      const std::vector<double>& accel_mps2, std::int64_t line,
                                      std::size_t per_line, FileProblems& problems);
+
+/// Merges the channels of one file, which have the instants that all of them have. Returns nullopt
+/// when there is any problem, also one that the caller reported.
+std::optional<Record> merge_channels(std::vector<Record> records, FileProblems& problems);
+
+/// Begins the line that ends a channel's data in COSMOS and CSMIP files.
+inline constexpr std::string_view kEndOfChannel = "/&";
 
 /// Returns the seconds since 1970 at the beginning of a day in UTC. Returns nullopt for an invalid
 /// date.

@@ -30,6 +30,22 @@ std::optional<Record> read_smc(FileProblems& problems);
 /// Reads K-NET and KiK-net.
 std::optional<Record> read_knet(FileProblems& problems);
 
+/// Returns true if this first line begins a file of CSMIP, volume 1, 2 or 3.
+bool is_csmip_title(std::string_view first_line);
+/// Reads CSMIP volumes 1 and 2; volume 3 holds no accelerations. Uses only the zone of the options,
+/// when the file's is unknown.
+std::optional<Record> read_csmip(const RecordOptions& options, FileProblems& problems);
+
+/// Returns true if this first line begins a file of ESM or ITACA.
+bool is_esm_title(std::string_view first_line);
+/// Reads accelerations of ESM and ITACA.
+std::optional<Record> read_esm(FileProblems& problems);
+
+/// Returns true if this first line begins a component of a GeoNet file.
+bool is_geonet_title(std::string_view first_line);
+/// Reads GeoNet V1A and V2A.
+std::optional<Record> read_geonet(FileProblems& problems);
+
 constexpr std::size_t kSacHeaderBytes = 632;
 /// Returns true if the first kSacHeaderBytes of a file are the header of a SAC file.
 bool is_sac_header(std::string_view bytes);

@@ -126,11 +126,22 @@ std::vector<std::string> record_seeds() {
   const char* const tables[] = {
       "Time;\"a [g]\";b (cm/s^2)\n0;\"0,5\";1,25\n0,01;-1;NA\n0,02;1;1\n",
       "# logger\nLogger 7\ntime\ta\n[ms]\t[m/s2]\n0\t1,234\n10\t2,345\n",
-      "Date;a [mg];\n2026-11-21T17:00:00.01+09:00;1;\n2026-11-21T17:00:00.02+09:00;2;\n"};
+      "Date;a [mg];\n2026-11-21T17:00:00.01+09:00;1;\n2026-11-21T17:00:00.02+09:00;2;\n",
+      ",a [g],b [g]\n2026-11-21 17:00:00.00,1,2\n2026-11-21 17:00:00.01,1,2\n",
+      ";SampleRate, 100,Hz\n;Headers, time,Ax [g]\n0.00,1\n0.01,2D-02\n",
+      "\"TOA5\",\"CR6\"\n\"TIMESTAMP\",\"RECORD\",\"A\"\n\"TS\",\"RN\",\"g\"\n\"\",\"\",\"Smp\"\n"
+      "\"2026-11-21 17:00:00\",0,1\n\"2026-11-21 17:00:00.01\",1,2\n"};
   std::vector<std::string> out;
   for (const char* table : tables)
     for (const int how : {0, 16, 32, 8}) out.push_back(static_cast<char>(how) + std::string(table));
-  for (const std::string& file : {cosmos(), smc(), knet(), sac(), sac(true)})
+  CsmipText corrected, pairs;
+  corrected.corrected = true;
+  pairs.unit = "Units of uncor accel are sec and g/10.";
+  pairs.points = "2";
+  pairs.values = "   .000  -.006   .005   .007\n";
+  for (const std::string& file :
+       {cosmos(), smc(), knet(), sac(), sac(true), csmip(), csmip(corrected), csmip(pairs), esm(),
+        geonet(), geonet("Up", true)})
     for (const int how : {0, 16, 64}) out.push_back(static_cast<char>(how) + file);
   int format = 1;
   for (const char* text : texts) {

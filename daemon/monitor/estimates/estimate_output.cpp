@@ -13,6 +13,7 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/base/mat_file.h"
+#include "daemon/base/printable.h"
 #include "daemon/monitor/estimates/estimate_table.h"
 #include "drivers/files/number_text.h"
 #include "drivers/files/partial_file.h"
@@ -63,10 +64,12 @@ std::optional<std::vector<std::string>> parameter_names(const std::string& log,
 std::string header(const std::vector<std::string>& names, bool boxplot) {
   std::string line = "window_end_s,status";
   for (const std::string& name : names) {
-    line += fmt::format(",{0},{0}.std_error,{0}.observable", name);
-    if (boxplot)
-      line += fmt::format(",{0}.q1,{0}.median,{0}.q3,{0}.whisker_low,{0}.whisker_high,{0}.outliers",
-                          name);
+    for (const char* column : {"", ".std_error", ".observable"})
+      line += ',' + csv_text(name + column);
+    if (!boxplot) continue;
+    for (const char* column :
+         {".q1", ".median", ".q3", ".whisker_low", ".whisker_high", ".outliers"})
+      line += ',' + csv_text(name + column);
   }
   return line + "\n";
 }

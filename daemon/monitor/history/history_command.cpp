@@ -61,7 +61,7 @@ std::string write_csv(const std::string& path, std::int64_t period_s,
   for (const NamedSummaries& s : summaries)
     for (const SummaryRow& row : s.rows) {
       line = fmt::format("{},{},{},{},{}", utc_text(row.start_us), row.start_us / 1'000'000,
-                         period_s, s.parameter.name, s.parameter.unit);
+                         period_s, csv_text(s.parameter.name), csv_text(s.parameter.unit));
       for (const Column& column : kColumns) {
         const double value = column.value(row);
         line += ',';

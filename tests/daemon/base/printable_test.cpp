@@ -28,6 +28,13 @@ TEST(Printable, EscapesControlCharacters) {
   EXPECT_EQ(printable("\xe2\x80\xa8\xef\xbb\xbf"), "\\u2028\\ufeff");  // a line's end, a mark
 }
 
+TEST(Printable, QuotesCellsOfCsv) {
+  EXPECT_EQ(csv_text("kx_1_y1"), "kx_1_y1");
+  EXPECT_EQ(csv_text("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_text("say \"a\""), "\"say \"\"a\"\"\"");
+  EXPECT_EQ(csv_text("a\nb\x1b[31m"), "a\\nb\\x1b[31m");
+}
+
 TEST(Printable, EscapesBytesThatAreNotUtf8) {
   EXPECT_EQ(printable("\xff\xfe"), "\\xff\\xfe");
   EXPECT_EQ(printable("\xc3"), "\\xc3");                    // cut

@@ -2,6 +2,7 @@
 // MATLAB files as records.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -9,6 +10,8 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <sys/resource.h>
+#include <zlib.h>
 
 #include "drivers/formats/record_file.h"
 #include "tests/support/mat.h"
@@ -267,6 +270,85 @@ TEST_F(Mat, RefusesAnImpossibleSizeBeforeAllocating) {
   bytes.replace(at, 8, std::string("\xf4\x01\x00\x00\xff\xff\xff\x0f", 8));
   test::write_file(path_, bytes);
   EXPECT_FALSE(read());
+}
+
+/// Returns bytes of a little-endian number.
+std::string little(std::uint64_t value, int bytes) {
+  std::string out;
+  for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i) & 0xff);
+  return out;
+}
+
+/// Returns the element of a column of zeros without its values, for a file of level 5. MathWorks,
+/// "MAT-File Format", chapter 1.
+std::string zeros_head(const std::string& name, std::uint32_t rows) {
+  std::string padded = name;
+  padded.resize((name.size() + 7) / 8 * 8, '\0');
+  const std::string parts = little(6, 4) + little(8, 4) + little(6, 8) + little(5, 4) +
+                            little(8, 4) + little(rows, 4) + little(1, 4) + little(1, 4) +
+                            little(name.size(), 4) + padded;
+  const std::uint64_t bytes = 8 * std::uint64_t{rows};
+  return little(14, 4) + little(parts.size() + 8 + bytes, 4) + parts + little(9, 4) +
+         little(bytes, 4);
+}
+
+/// Returns a file with one compressed column of that many zeros.
+std::string compressed_zeros(std::uint32_t rows) {
+  z_stream stream{};
+  deflateInit(&stream, 9);
+  std::string packed;
+  const auto add = [&](std::string bytes, int flush) {
+    std::string to(1 << 16, '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(bytes.data());
+    stream.avail_in = static_cast<uInt>(bytes.size());
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(to.data());
+      stream.avail_out = static_cast<uInt>(to.size());
+      deflate(&stream, flush);
+      packed.append(to, 0, to.size() - stream.avail_out);
+    } while (stream.avail_out == 0);
+  };
+  add(zeros_head("a", rows), Z_NO_FLUSH);
+  for (std::uint64_t left = 8 * std::uint64_t{rows}; left > 0;) {
+    const std::uint64_t part = std::min<std::uint64_t>(left, 1 << 20);
+    add(std::string(part, '\0'), Z_NO_FLUSH);
+    left -= part;
+  }
+  add("", Z_FINISH);
+  deflateEnd(&stream);
+  std::string head = "MATLAB 5.0 MAT-file";
+  head.resize(116, ' ');
+  return head + std::string(8, '\0') + std::string("\x00\x01IM", 4) + little(15, 4) +
+         little(packed.size(), 4) + packed;
+}
+
+TEST_F(Mat, RefusesACompressedVectorBeforeItFillsMemory) {
+  constexpr std::int64_t kMost_kB = 100'000;
+  options_.step_s = 0.01;
+  test::write_file(path_, compressed_zeros(34'000'000));
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  expect_said(read(), "\"a\" has 34000000 samples: a record holds at most");
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kMost_kB);
+  test::write_file(path_, compressed_zeros(1000));
+  const auto record = read();
+  ASSERT_TRUE(record) << said(record);
+  EXPECT_EQ(record->time_s.size(), 1000U);
+}
+
+TEST_F(Mat, LeavesOutTheVariableThatMatlabAddsForItsObjects) {
+  test::MatWriter(path_).add_column("t", times()).add_column("a", values(1));
+  std::string bytes = test::read_file(path_);
+  std::string own = zeros_head("", 3);
+  own[16] = 9;  // class uint8, with three bytes of values
+  const std::size_t values_at = own.size() - 8;
+  own.replace(values_at, 8, little(2, 4) + little(3, 4) + std::string(8, '\0'));
+  own.replace(4, 4, little(own.size() - 8, 4));
+  test::write_file(path_, bytes + own);
+  const auto record = read();
+  ASSERT_TRUE(record) << said(record);
+  EXPECT_EQ(record->names, std::vector<std::string>{"a"});
 }
 
 TEST_F(Mat, RefusesColumnsWithoutUnitThatDifferInLengthFromTheTimes) {

@@ -83,6 +83,38 @@ TEST_F(RecordFile, LeavesOutALastRowThatMayBeTruncated) {
   EXPECT_NE(record->notes[0].find("line 4: the last row has no line end"), std::string::npos);
 }
 
+TEST_F(RecordFile, LeavesOutANumberAtTheEndThatMayBeTruncated) {
+  const auto expect_left_out = [&](const std::string& text, const RecordOptions& options,
+                                   const std::string& note, std::size_t samples) {
+    SCOPED_TRACE(text);
+    const auto record = read(text, options);
+    ASSERT_TRUE(record);
+    EXPECT_EQ(record->time_s.size(), samples);
+    ASSERT_FALSE(record->notes.empty());
+    EXPECT_NE(record->notes[0].find(note + " has no line end"), std::string::npos)
+        << record->notes[0];
+  };
+  expect_left_out("1 2 3\n4 5 6\n7 8", declared(1, 0.1), "line 3: the last number", 7);
+  expect_left_out("1\n2\n3", declared(1, 0.1), "line 3: the last number", 2);
+  expect_left_out("0 1\n1 2\n2 3", declared(1), "line 3: the last row", 2);
+  expect_left_out(
+      "PEER NGA\nEVENT\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 3, DT= .01 SEC\n1 2 3", {},
+      "line 5: the last number", 2);
+  expect_left_out(
+      "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z\n0,1,1,1,1\n1,8334,1,1,1\n2,16667,1,1,9", {},
+      "line 4: the last row", 2);
+}
+
+TEST_F(RecordFile, ReadsTheExponentsOfFortranDoubles) {
+  const auto record = read(" 0.0D+00 0.5D+00\n 1.0D-02 -2.5d-03\n 2.0D-02 1.0D+01\n", declared(1));
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->accel_mps2[0], (std::vector<double>{0.5, -0.0025, 10}));
+  EXPECT_NEAR(record->rate_hz, 100, 1e-9);
+  expect_refused("0 1\n1 2D\n", 2, "2D", declared(1));
+  expect_refused("0 1\n1 2D1\n", 2, "2D1", declared(1));
+  expect_refused("0 1\n1 2D+x\n", 2, "2D+x", declared(1));
+}
+
 TEST_F(RecordFile, FillsLossesOfWholeStepsWithNan) {
   const auto record = read("time_s,a\n0,1\n0.01,2\n0.02,3\n0.05,6\n0.06,7\n");
   ASSERT_TRUE(record);

@@ -188,6 +188,64 @@ TEST_F(Table, ReadsTimeStampsWithTheirZone) {
   expect_refused("Time,a [g]\n2026-11-21T17:00:00Z,1\n5,1\n", 3, {"\"5\""});
 }
 
+TEST_F(Table, TakesTheTimeStampsOfAnUnnamedIndex) {
+  const std::string pandas = ",a\n2026-11-21 17:00:00.000,0.5\n2026-11-21 17:00:00.010,-1\n";
+  options_.unit_mps2 = kG;
+  options_.zone_min = 0;
+  const auto record = read(pandas);
+  ASSERT_TRUE(record) << problems_[0].message;
+  EXPECT_EQ(record->names, std::vector<std::string>{"a"});
+  EXPECT_NEAR(record->time_s[0], 1795280400, 1e-6);
+  EXPECT_DOUBLE_EQ(record->accel_mps2[0][1], -kG);
+  options_.unit_mps2 = kG;
+  options_.zone_min = 0;
+  const auto semicolons = read(";a\n2026-11-21 17:00:00,00;0,5\n2026-11-21 17:00:00,01;-1,5\n");
+  ASSERT_TRUE(semicolons) << problems_[0].message;
+  EXPECT_DOUBLE_EQ(semicolons->accel_mps2[0][1], -1.5 * kG);
+  expect_read(",Time,a [m/s2]\n0,0,0.5\n1,0.01,-1\n");
+  options_.step_s = 0.01;
+  expect_read(",a [m/s2]\n0,0.5\n1,-1\n");
+  expect_refused(",a [m/s2]\n0,0.5\n1,-1\n", 1, {"--step"});
+}
+
+TEST_F(Table, ReadsTheHeaderOfGcdcLoggersInTheirRemarks) {
+  options_.unit_mps2 = 2;
+  expect_read(
+      ";Title, http://www.gcdataconcepts.com, X16-1D\n;SampleRate, 100,Hz\n"
+      ";Headers, time,a\n0.000,0.5\n0.010,-1\n;shutdown: a, b\n",
+      2);
+  options_.unit_mps2 = 1;
+  expect_read("Time;a\n0;0,5\n0,01;-1\n");  // a row of such a table is no remark
+  expect_refused("Time;a [g]\n;0,5\n0,01;-1\n", 2, {"time \"\""});
+}
+
+TEST_F(Table, ReadsTheFourHeaderLinesOfToa5) {
+  const std::string head =
+      "\"TOA5\",\"CR6\",\"CR6\",\"1\",\"CR6.Std.09\",\"CPU:test.CR6\",\"1\",\"A\"\n";
+  const std::string text = head +
+                           "\"TIMESTAMP\",\"RECORD\",\"a\",\"b\"\n\"TS\",\"RN\",\"g\",\"mg\"\n"
+                           "\"\",\"\",\"Smp\",\"Smp\"\n\"2026-11-21 17:00:00\",7,0.5,100\n"
+                           "\"2026-11-21 17:00:00.01\",8,-1,\"NAN\"\n";
+  options_.zone_min = 0;
+  const auto record = read(text);
+  ASSERT_TRUE(record) << problems_[0].where << problems_[0].message;
+  EXPECT_EQ(record->names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_NEAR(record->time_s[0], 1795280400, 1e-6);
+  EXPECT_NEAR(record->rate_hz, 100, 0.01);
+  EXPECT_DOUBLE_EQ(record->accel_mps2[0][1], -kG);
+  EXPECT_DOUBLE_EQ(record->accel_mps2[1][0], 0.1 * kG);
+  EXPECT_TRUE(std::isnan(record->accel_mps2[1][1]));
+  EXPECT_NE(notes(*record).find("\"RECORD\": record numbers, left out"), std::string::npos);
+  expect_refused(text, 5, {"does not say its zone"});
+  options_.zone_min = 0;
+  const std::size_t unit = text.find("\"mg\"");
+  expect_refused(text.substr(0, unit) + "\"Volts\"" + text.substr(unit + 4), 2, {"\"Volts\""});
+  options_.zone_min = 0;
+  expect_refused(text.substr(0, text.find("\"TS\"")), 2, {"does not say the unit"});
+  options_.zone_min = 0;
+  expect_refused(head, 0, {"there is no header"});
+}
+
 TEST_F(Table, NeverInterleavesPossibleColumns) {
   const std::string text = "0.00 1 2\n0.01 3 4\n0.02 5 6\n";
   options_.unit_mps2 = 1;

@@ -56,6 +56,11 @@ TEST(RecordCsvWriter, ReportsWhyItCannotWrite) {
   EXPECT_EQ(nowhere.error(), "No such file or directory");
   EXPECT_FALSE(comma.open(directory.path("rec.csv"), {"a,b"}));
   EXPECT_NE(comma.error().find("a,b"), std::string::npos);
+  for (const char* name : {"a\nb", "a\rb", "a\x1b[31m", "a\x7f", "a\"b"}) {
+    RecordCsvWriter writer;
+    EXPECT_FALSE(writer.open(directory.path("rec.csv"), {name}));
+    EXPECT_EQ(writer.error().find_first_of("\n\r\x1b\x7f"), std::string::npos);
+  }
   EXPECT_TRUE(directory.names().empty());
 }
 

@@ -212,6 +212,38 @@ TEST_F(Miniseed, ReportsDamageWithItsPlace) {
   EXPECT_FALSE(record);
 }
 
+/// Returns Steim-1 records of `length` bytes without any blockette, as old recorders write them.
+std::string without_blockettes(int length) {
+  test::SeedSpan span;
+  span.start_us = kStart_us;
+  span.encoding = DE_STEIM1;
+  span.record_bytes = length;
+  span.values = counts(0, 3000);
+  span.microseconds = false;
+  std::string bytes = miniseed(span);
+  for (std::size_t at = 0; at < bytes.size(); at += static_cast<std::size_t>(length)) {
+    bytes[at + 39] = 0;                   // number of blockettes
+    bytes[at + 46] = bytes[at + 47] = 0;  // offset of the first
+  }
+  return bytes;
+}
+
+TEST_F(Miniseed, ReadsRecordsThatDoNotStateTheirLength) {
+  const std::string bytes = without_blockettes(1024);
+  ASSERT_GT(bytes.size(), 3 * 1024U);
+  const auto record = read(bytes);
+  ASSERT_TRUE(record) << said(record);
+  ASSERT_EQ(record->accel_mps2[0].size(), 3000U);
+  for (std::size_t i = 0; i < 3000; ++i)
+    ASSERT_EQ(record->accel_mps2[0][i], counts(0, 3000)[i] * kCount_mps2) << i;
+  const auto one = read(bytes.substr(0, 1024));
+  ASSERT_TRUE(one) << said(one);
+  EXPECT_EQ(one->accel_mps2[0][5], record->accel_mps2[0][5]);
+  for (const std::size_t cut : {100, 500, 900})
+    expect_said(read(bytes.substr(0, bytes.size() - cut)), "the last record is cut off");
+  expect_said(read(bytes.substr(0, 1000)), "the last record is cut off");
+}
+
 TEST_F(Miniseed, TakesSamplesThatLookLikeAHeaderAsSamples) {
   for (const int byte_order : {0, 1}) {
     test::SeedSpan quiet = span(0, 100);
@@ -266,6 +298,31 @@ TEST(UnreadFormats, AreRefusedWithAdvice) {
     const std::string message = refused(name, bytes);
     EXPECT_NE(message.find(word), std::string::npos) << name << ": " << message;
     EXPECT_NE(message.find(instead), std::string::npos) << name << ": " << message;
+  }
+  std::string sac_text;
+  for (int i = 0; i < 14; ++i)
+    sac_text += "     0.01000000     -12345.00      -12345.00       0.5       1\n";
+  sac_text +=
+      "      2020         1         0         0         0\n         0         6         0 1 2\n";
+  const std::string level_4("\0\0\0\0\x03\0\0\0\x01\0\0\0\0\0\0\0\x04\0\0\0acc\0", 24),
+      big_level_4(
+          "\0\0\x03\xe8\0\0\0\x03\0\0\0\x01\0\0\0\0\0\0\0\x04"
+          "acc\0",
+          24),
+      event("K\x01\x01\x09\0\0\0\x01\x07\xf8\0\0\0\0\0\0", 16);
+  for (const auto& [name, bytes, word, advice] : std::vector<std::array<std::string, 4>>{
+           {"a.npy", "\x93NUMPY\x01" + std::string(100, '\0'), "NumPy array", "numpy.savetxt"},
+           {"a.xlsx", "PK\x03\x04" + std::string(100, '\0'), "Excel workbook (.xlsx)", "CSV UTF-8"},
+           {"a.xls", "\xD0\xCF\x11\xE0" + std::string(100, '\0'), "workbook (.xls)", "CSV UTF-8"},
+           {"a.tdms", "TDSm" + std::string(100, '\0'), "LabVIEW TDMS", "npTDMS"},
+           {"a.lvm", "LabVIEW Measurement\t\nWriter_Version\t2\n", "(.lvm)", "lvm_read"},
+           {"a.sac", sac_text, "alphanumeric form of SAC", "binary SAC"},
+           {"a.mat", level_4 + std::string(24, '\0'), "MATLAB file of level 4", "-v7"},
+           {"b.mat", big_level_4 + std::string(24, '\0'), "MATLAB file of level 4", "-v7"},
+           {"a.evt", event + std::string(2040, '\0'), "Kinemetrics recorder", "ObsPy"}}) {
+    const std::string message = refused(name, bytes);
+    EXPECT_NE(message.find(word), std::string::npos) << name << ": " << message;
+    EXPECT_NE(message.find(advice), std::string::npos) << name << ": " << message;
   }
 }
 

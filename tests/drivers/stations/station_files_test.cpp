@@ -110,6 +110,14 @@ TEST_F(StationFile, ReadsCosmosInOtherLettersAndFormats) {
   EXPECT_DOUBLE_EQ(r->accel_mps2[0][3], -0.025);
 }
 
+TEST_F(StationFile, ReadsTheEndLinesOfCosmosFromDifferentNetworks) {
+  const auto usual = read(cosmos());
+  const auto other = read(replaced(cosmos(), "End-of-data for ChanHNE acceleration",
+                                   "/&  ----------  End of data for channel  1  ----------"));
+  ASSERT_TRUE(usual && other) << problems_[0].message;
+  EXPECT_EQ(other->accel_mps2, usual->accel_mps2);
+}
+
 TEST_F(StationFile, ReportsACosmosPeakThatDiffersFromTheValues) {
   const auto r = read(replaced(cosmos(), "-9999.001    -999", "-5000.001    -999"));
   ASSERT_TRUE(r);
@@ -131,6 +139,7 @@ TEST_F(StationFile, RefusesDamagedCosmos) {
   CosmosChannel raw{1, 50};
   expect_refused(replaced(cosmos(raw), "         1.2553", "    -999.000000"), 1, "volts per g");
   expect_refused(good + good, 0, "appears twice");
+  expect_refused(good.substr(0, good.find("-2.500") + 4), 42, "cut off inside number 4");
   expect_refused(replaced(good, "      11", "     257"), 1, "not a valid time");
   expect_refused(replaced(good, "    2018", "   67554"), 1, "not a valid time");
   expect_refused(replaced(good, "8040.HNE", "8040.H,E"), 0, "must not contain");
@@ -170,6 +179,9 @@ TEST_F(StationFile, RefusesDamagedSmc) {
   expect_refused(replaced(smc(), "2 CORRECTED ACCELEROGRAM", ""), 1, "neither", forced);
   expect_refused(replaced(smc(), "2 CORRECTED ACCELEROGRAM", "3 VELOCITY"), 1, "neither", forced);
   expect_refused(replaced(smc(), "0.2000000E+03", "0.0000000E+00"), 18, "samples per second");
+  expect_refused(replaced(smc(), "0.2000000E+03", "0.1700000E+39"), 18,
+                 "digitized at uneven times");
+  expect_refused(smc().substr(0, smc().size() - 3), 30, "cut off inside number 9");
   expect_refused(replaced(smc(), " .4000E+01", " .4zzzE+01"), 29, "not a finite number");
 }
 
@@ -188,6 +200,16 @@ TEST_F(StationFile, ReadsKnetWithItsHeader) {
   EXPECT_TRUE(deep->notes[0].ends_with(": up, in the borehole"));
 }
 
+TEST_F(StationFile, LeavesOutAKnetNumberThatMayBeCutOff) {
+  const auto r = read(knet().substr(0, knet().size() - 3));  // -22645 without 45 and line end
+  ASSERT_TRUE(r) << problems_[0].message;
+  EXPECT_EQ(r->accel_mps2[0].size(), 9u);
+  EXPECT_NE(r->notes[1].find("line 19: the last number has no line end"), std::string::npos);
+  const auto longer = read(replaced(knet(), "(s)  0.1", "(s)  0.05"));
+  ASSERT_TRUE(longer);
+  EXPECT_NE(longer->notes[1].find("10 samples, the header's duration has 5"), std::string::npos);
+}
+
 TEST_F(StationFile, RefusesDamagedKnet) {
   expect_refused(knet().substr(0, 200), 0, "17 lines");
   expect_refused(replaced(knet(), "Station Code", "Station Cod_"), 0, "no Station Code");
@@ -197,6 +219,10 @@ TEST_F(StationFile, RefusesDamagedKnet) {
   expect_refused(replaced(knet(), "100Hz", "0Hz"), 11, "rate");
   expect_refused(replaced(knet(), "02:29:21", "02:29"), 10, "not a time");
   expect_refused(replaced(knet(), "22651", "2265x"), 18, "whole number");
+  expect_refused(replaced(knet(), "   22641    22642", "   22641"), 12,
+                 "are 10 samples at 100 Hz, but the file has 9");
+  expect_refused(replaced(knet(), "   22640   -22645\n", "   22640"), 12, "cut off");
+  expect_refused(replaced(knet(), "(s)  0.1", "(s)  min"), 12, "must be a number");
 }
 
 RecordOptions declared(double unit_mps2) {

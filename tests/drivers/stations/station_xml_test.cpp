@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -95,6 +96,18 @@ TEST_F(StationXml, GivesSensitivityAndPlaceOfAChannel) {
   EXPECT_TRUE(
       said("XX.TEST.01.HN1: azimuth 20 deg, 7th floor & E side, 2.34375e-06 m/s2 per count"));
   EXPECT_TRUE(said("not used: the response's stages, elevation, depth"));
+}
+
+TEST_F(StationXml, KnowsTheUnitsOfOtherNetworks) {
+  for (const auto& [unit, mps2] :
+       {std::pair{"NM/S**2", 1e-9}, std::pair{"nm/s^2", 1e-9}, std::pair{"UM/S/S", 1e-6},
+        std::pair{"M/(S**2)", 1.0}, std::pair{"m s**-2", 1.0}}) {
+    XmlChannel channel;
+    channel.unit = unit;
+    const auto record = read(station_xml({channel}), miniseed(span()));
+    ASSERT_TRUE(record) << unit;
+    EXPECT_DOUBLE_EQ(record->accel_mps2[0][3], 400 * mps2 / kSensitivity) << unit;
+  }
 }
 
 TEST_F(StationXml, IgnoresOtherEpochs) {
