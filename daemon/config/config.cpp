@@ -36,8 +36,9 @@ std::optional<Config> parse_config(const std::string& path, const std::string& t
   const std::optional<TomlValue> document = parse_toml(text, found);
   if (document) config.section_sha256 = section_digests(*document);
   if (document && read_config(*document, config, found))
-    config.doubts = with_file(
-        path, doubted_values(*document, config.pipeline.structure, config.pipeline.design));
+    for (ConfigProblem& doubt : with_file(
+             path, doubted_values(*document, config.pipeline.structure, config.pipeline.design)))
+      config.doubts.push_back(std::move(doubt));
   if (found.empty()) {
     place_all_files(config);
     load_watch_baseline(config, problems);

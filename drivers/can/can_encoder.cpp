@@ -41,8 +41,8 @@ void CanEncoder::add_node(std::size_t index, const std::vector<double>& values,
     frame.fd = m.fd;
     frame.bit_rate_switch = m.fd;
     frame.length = static_cast<std::uint8_t>(m.length);
-    if (m.multiplexor)
-      put_bits(*m.multiplexor, static_cast<std::uint64_t>(m.multiplexor_value), frame.data);
+    for (const CanSwitch& multiplexor : m.switches)
+      put_bits(multiplexor.field, multiplexor.values.front().least, frame.data);
     if (m.counter) put_bits(*m.counter, static_cast<std::uint64_t>(count), frame.data);
     if (m.clock) {
       const double ticks = static_cast<double>(instant_ - phase) * node.period_us /

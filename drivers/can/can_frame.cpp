@@ -80,6 +80,13 @@ double physical(const CanField& field, std::span<const std::uint8_t> data) {
   return value * field.factor + field.offset;
 }
 
+bool is_on(const CanSwitch& multiplexor, std::span<const std::uint8_t> data) {
+  const std::uint64_t value = raw_bits(multiplexor.field, data);
+  return std::any_of(
+      multiplexor.values.begin(), multiplexor.values.end(),
+      [&](const ValueRange& range) { return value >= range.least && value <= range.most; });
+}
+
 void put_bits(const CanField& field, std::uint64_t raw, std::span<std::uint8_t> data) {
   int place = 0;
   for_each_bit(field, [&](int bit) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace framewatch::drivers {
 
@@ -39,6 +40,18 @@ struct CanField {
   double offset = 0;
 };
 
+/// Whole numbers from `least` to `most`.
+struct ValueRange {
+  std::uint64_t least = 0, most = 0;
+  bool operator==(const ValueRange&) const = default;
+};
+
+/// A multiplexor of a message: other fields are in a frame only while this one has a certain value.
+struct CanSwitch {
+  CanField field;                  ///< a whole number; its bits count, without sign and factor
+  std::vector<ValueRange> values;  ///< values at which the other fields are in the frame
+};
+
 /// Calls `take(bit)` for each bit of the field, from its lowest to its highest. `bit` is a DBC bit
 /// number.
 template <typename Take>
@@ -65,6 +78,9 @@ std::uint64_t raw_bits(const CanField& field, std::span<const std::uint8_t> data
 std::int64_t raw_integer(const CanField& field, std::span<const std::uint8_t> data);
 /// Returns raw * factor + offset. NaN and infinity in the frame are returned unchanged.
 double physical(const CanField& field, std::span<const std::uint8_t> data);
+
+/// Returns true if the switch has one of its values. Precondition: its field fits.
+bool is_on(const CanSwitch& multiplexor, std::span<const std::uint8_t> data);
 
 /// Writes a bit pattern into the data.
 void put_bits(const CanField& field, std::uint64_t raw, std::span<std::uint8_t> data);

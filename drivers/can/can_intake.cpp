@@ -191,9 +191,8 @@ void CanIntake::message(int index, int at, const CanFrame& frame, double host_us
   Node& node = nodes_[static_cast<std::size_t>(index)];
   const CanMessageMap& m =
       map_.nodes[static_cast<std::size_t>(index)].messages[static_cast<std::size_t>(at)];
-  if (m.multiplexor && fits(*m.multiplexor, frame.length) &&
-      raw_integer(*m.multiplexor, frame.data) != m.multiplexor_value)
-    return;
+  for (const CanSwitch& multiplexor : m.switches)
+    if (fits(multiplexor.field, frame.length) && !is_on(multiplexor, frame.data)) return;
   ++node.counters.frames;
   node.counters.last_stamp_us = frame.stamp_us;
   if (frame.fd != m.fd) {

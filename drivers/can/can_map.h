@@ -31,16 +31,15 @@ struct CanReading {
   double most = std::numeric_limits<double>::infinity();
 };
 
-/// One message of a node; of a multiplexed message, one value of the multiplexor.
+/// One message of a node; of a multiplexed message, the part that the same multiplexors switch.
 struct CanMessageMap {
   std::string name;
   std::uint32_t id = 0;
   std::uint32_t mask = 0;  ///< bits of the id that must agree
   bool extended = false;
-  int length = 0;   ///< bytes; frames of another length are rejected
-  bool fd = false;  ///< must come as a CAN FD frame
-  std::optional<CanField> multiplexor;
-  std::int64_t multiplexor_value = 0;
+  int length = 0;                   ///< bytes; frames of another length are rejected
+  bool fd = false;                  ///< must come as a CAN FD frame
+  std::vector<CanSwitch> switches;  ///< frames in which one of them is off are ignored
   std::vector<CanReading> readings;
   std::optional<CanField> counter;  ///< sample counter of the node
   std::optional<CanField> clock;    ///< clock of the node

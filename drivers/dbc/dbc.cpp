@@ -3,159 +3,54 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "drivers/dbc/dbc_scanner.h"
 #include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {
 namespace {
 
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-/// Walks through the text of a DBC file word by word. A function that does not find what it looks
-/// for consumes nothing.
-class DbcScanner {
- public:
-  explicit DbcScanner(std::string_view text) : text_(text) {}
-
-  bool at_end() const { return at_ >= text_.size(); }
-  std::int64_t line() const { return line_; }
-  /// Returns the rest of this line, for messages.
-  std::string_view rest_of_line() const {
-    const std::size_t end = text_.find_first_of("\r\n", at_);
-    return text_.substr(at_, end == std::string_view::npos ? end : end - at_);
-  }
-
-  /// Skips blanks and line ends.
-  void skip_space() {
-    while (!at_end() && (here() == ' ' || here() == '\t' || here() == '\r' || here() == '\n'))
-      step();
-  }
-
-  /// Skips blanks within the line.
-  void skip_blanks() {
-    while (!at_end() && (here() == ' ' || here() == '\t' || here() == '\r')) step();
-  }
-
-  void skip_line() {
-    while (!at_end() && here() != '\n') step();
-    if (!at_end()) step();
-  }
-
-  /// Skips to after the next ';' outside quotes. Returns false at the end of the file.
-  bool skip_statement() {
-    while (!at_end()) {
-      if (here() == '"') {
-        if (!quoted()) return false;
-        continue;
-      }
-      const bool last = here() == ';';
-      step();
-      if (last) return true;
-    }
-    return false;
-  }
-
-  /// Reads a name of letters, digits and _ that does not begin with a digit. Returns an empty text
-  /// when there is no name.
-  std::string_view word() {
-    const std::string_view found = peek_word();
-    at_ += found.size();
-    return found;
-  }
-
-  /// Returns what word() would return, without consuming it.
-  std::string_view peek_word() {
-    skip_blanks();
-    if (!is_letter(here())) return {};
-    std::size_t end = at_;
-    while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]))) ++end;
-    return text_.substr(at_, end - at_);
-  }
-
-  /// Reads a character after blanks. Returns false for another one.
-  bool symbol(char wanted) {
-    skip_blanks();
-    if (here() != wanted) return false;
-    step();
-    return true;
-  }
-
-  std::optional<std::uint64_t> natural() {
-    skip_blanks();
-    std::uint64_t value = 0;
-    const auto [end, error] =
-        std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-    if (error != std::errc{}) return std::nullopt;
-    at_ = static_cast<std::size_t>(end - text_.data());
-    return value;
-  }
-
-  std::optional<double> number() {
-    skip_blanks();
-    std::size_t end = at_;
-    while (end < text_.size() &&
-           (is_digit(text_[end]) ||
-            std::string_view("+-.eE").find(text_[end]) != std::string_view::npos))
-      ++end;
-    const std::optional<double> value = parse_number(text_.substr(at_, end - at_));
-    if (value) at_ = end;
-    return value;
-  }
-
-  /// Reads a text in quotes, which may span lines. Returns nullopt when the next character is not a
-  /// quote, or the text does not end.
-  std::optional<std::string> quoted() {
-    skip_blanks();
-    if (here() != '"') return std::nullopt;
-    std::string out;
-    for (step(); !at_end(); step()) {
-      if (here() == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
-        step();
-        out += '"';
-      } else if (here() == '"') {
-        step();
-        return out;
-      } else {
-        out += here();
-      }
-    }
-    return std::nullopt;
-  }
-
- private:
-  char here() const { return at_ < text_.size() ? text_[at_] : '\0'; }
-  void step() {
-    if (here() == '\n') ++line_;
-    ++at_;
-  }
-
-  std::string_view text_;
-  std::size_t at_ = 0;
-  std::int64_t line_ = 1;
-};
-
 constexpr std::uint32_t kExtendedFlag = 0x80000000u;
-constexpr std::uint64_t kIndependent = 0xC0000000u;  ///< VECTOR__INDEPENDENT_SIG_MSG
+constexpr std::string_view kIndependent = "VECTOR__INDEPENDENT_SIG_MSG";
 
+constexpr std::array kRead = {"VERSION", "NS_", "BS_",          "BU_",        "BO_",
+                              "SG_",     "BA_", "SIG_VALTYPE_", "SG_MUL_VAL_"};
 /// Statements that end with a semicolon and are not needed.
-constexpr std::array kSkipped = {
-    "CM_",        "BA_DEF_",       "BA_DEF_DEF_",  "BA_DEF_REL_",    "BA_DEF_DEF_REL_",
-    "BA_REL_",    "BA_SGTYPE_",    "VAL_",         "VAL_TABLE_",     "BO_TX_BU_",
-    "EV_",        "EV_DATA_",      "ENVVAR_DATA_", "SGTYPE_",        "SGTYPE_VAL_",
-    "SIG_GROUP_", "SIG_TYPE_REF_", "SG_MUL_VAL_",  "BA_DEF_SGTYPE_", "CAT_DEF_",
-    "CAT_",       "FILTER",        "BU_EV_REL_",   "BU_SG_REL_",     "BU_BO_REL_"};
+constexpr std::array kSkipped = {"CM_",
+                                 "BA_DEF_",
+                                 "BA_DEF_DEF_",
+                                 "BA_DEF_REL_",
+                                 "BA_DEF_DEF_REL_",
+                                 "BA_REL_",
+                                 "BA_SGTYPE_",
+                                 "VAL_",
+                                 "VAL_TABLE_",
+                                 "BO_TX_BU_",
+                                 "EV_",
+                                 "EV_DATA_",
+                                 "ENVVAR_DATA_",
+                                 "SGTYPE_",
+                                 "SGTYPE_VAL_",
+                                 "SIG_GROUP_",
+                                 "SIG_TYPE_REF_",
+                                 "SIGTYPE_VALTYPE_",
+                                 "BA_DEF_SGTYPE_",
+                                 "CAT_DEF_",
+                                 "CAT_",
+                                 "FILTER",
+                                 "BU_EV_REL_",
+                                 "BU_SG_REL_",
+                                 "BU_BO_REL_"};
+
+template <std::size_t Count>
+bool is_one_of(const std::array<const char*, Count>& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 /// Parses a DBC file statement by statement.
 class Parser {
@@ -166,10 +61,10 @@ class Parser {
   std::optional<Dbc> run() {
     for (scan_.skip_space(); !scan_.at_end() && !problems_.full(); scan_.skip_space()) statement();
     finish_message();
-    check_messages();
+    index_messages();
     apply_value_types();
-    for (const DbcMessage& message : dbc_.messages)
-      for (const DbcRule& rule : broken_rules(message)) problems_.add(rule.line, rule.message);
+    apply_switches();
+    find_only_multiplexors();
     if (problems_.any()) return std::nullopt;
     return std::move(dbc_);
   }
@@ -181,19 +76,37 @@ class Parser {
     std::string signal;
     std::uint64_t type;
   };
+  struct Switched {
+    std::int64_t line;
+    std::uint64_t id;
+    std::string signal, multiplexor;
+    std::vector<ValueRange> values;
+  };
 
   void fail(const std::string& rule) {
-    problems_.add(scan_.line(), fmt::format("{}, here: {}", rule, show_text(scan_.rest_of_line())));
-    scan_.skip_line();
+    problems_.add(line_, fmt::format("{}, here: {}", rule, show_text(scan_.rest_of_line())));
+    if (!at_statement()) scan_.skip_line();
+  }
+
+  /// Returns true if a statement begins here. Nodes may have the name FILTER.
+  bool at_statement() {
+    const std::string_view word = scan_.peek_word();
+    return word != "FILTER" && (is_one_of(kRead, word) || is_one_of(kSkipped, word));
+  }
+
+  /// Skips what is left of a line, except a statement.
+  void end_line(std::int64_t line) {
+    scan_.skip_space();
+    if (scan_.line() == line && !at_statement()) scan_.skip_line();
   }
 
   void statement() {
+    line_ = scan_.line();
     const std::string keyword(scan_.peek_word());
     if (keyword != "SG_") finish_message();
-    if (std::find(kSkipped.begin(), kSkipped.end(), keyword) != kSkipped.end()) {
-      const std::int64_t line = scan_.line();
+    if (is_one_of(kSkipped, keyword)) {
       if (!scan_.skip_statement())
-        problems_.add(line, keyword + " does not end: a ; or a closing quote is missing");
+        problems_.add(line_, keyword + " does not end: a ; or a closing quote is missing");
       return;
     }
     if (keyword.empty()) return fail("expected a statement");
@@ -204,7 +117,10 @@ class Parser {
       new_symbols();
     } else if (keyword == "BS_" || keyword == "BU_") {
       if (!scan_.symbol(':')) return fail(keyword + " is followed by a colon");
-      scan_.skip_line();
+      const std::int64_t line = scan_.line();
+      while (keyword == "BU_" && !at_statement() && !scan_.word().empty()) {
+      }
+      end_line(line);
     } else if (keyword == "BO_") {
       message();
     } else if (keyword == "SG_") {
@@ -213,6 +129,8 @@ class Parser {
       attribute();
     } else if (keyword == "SIG_VALTYPE_") {
       value_type();
+    } else if (keyword == "SG_MUL_VAL_") {
+      switched();
     } else {
       fail("unknown statement " + keyword);
     }
@@ -232,15 +150,14 @@ class Parser {
   }
 
   void finish_message() {
-    if (open_) dbc_.messages.push_back(std::move(*open_));
+    if (open_ && open_->name != kIndependent) dbc_.messages.push_back(std::move(*open_));
     open_.reset();
     dropped_ = false;
   }
 
   void message() {
-    finish_message();
     DbcMessage m;
-    m.line = scan_.line();
+    m.line = line_;
     const auto id = scan_.natural();
     dropped_ = true;  // skip the signals of a message that cannot be read
     if (!id) return fail("BO_ is followed by an id");
@@ -248,17 +165,16 @@ class Parser {
     if (m.name.empty() || !scan_.symbol(':'))
       return fail("BO_ id is followed by a name and a colon");
     const auto length = scan_.natural();
-    if (!length || scan_.word().empty()) return fail("expected a length in bytes and a sender");
-    scan_.skip_line();
-    if (*id == kIndependent) return;
+    if (!length || at_statement() || scan_.word().empty())
+      return fail("expected a length in bytes and a sender");
+    end_line(scan_.line());
     m.extended = (*id & kExtendedFlag) != 0;
     m.id = static_cast<std::uint32_t>(*id) & ~kExtendedFlag;
-    if (*id > 0xFFFFFFFFu || m.id > (m.extended ? 0x1FFFFFFFu : 0x7FFu)) {
-      problems_.add(m.line, fmt::format("id {} of {} is not a valid {}-bit id{}", *id, m.name,
-                                        m.extended ? 29 : 11,
-                                        m.extended ? "" : "; a 29-bit one has bit 31 set"));
-      return;
-    }
+    if (*id > 0xFFFFFFFFu || m.id > (m.extended ? 0x1FFFFFFFu : 0x7FFu))
+      m.contradictions.push_back(
+          {m.line,
+           fmt::format("id {} of {} is not a valid {}-bit id{}", *id, m.name, m.extended ? 29 : 11,
+                       m.extended ? "" : "; a 29-bit one has bit 31 set")});
     m.length = *length > 64 ? 65 : static_cast<int>(*length);
     open_ = std::move(m);
     dropped_ = false;
@@ -267,10 +183,11 @@ class Parser {
   void signal() {
     if (!open_) {
       if (!dropped_) return fail("SG_ without a BO_ before it");
-      return scan_.skip_line();
+      while (!scan_.at_end() && !at_statement()) scan_.skip_line();
+      return;
     }
     DbcSignal s;
-    s.line = scan_.line();
+    s.line = line_;
     s.name = scan_.word();
     if (s.name.empty()) return fail("SG_ is followed by a name");
     if (!multiplexing(std::string(scan_.word()), s))
@@ -280,8 +197,21 @@ class Parser {
       return fail(fmt::format(
           "signal {}: expected start|bits@0 or 1 and + or -, (factor,offset), [min|max], \"unit\"",
           s.name));
-    scan_.skip_line();
+    skip_receivers();
     open_->signals.push_back(std::move(s));
+  }
+
+  /// Skips the names of nodes after a signal. They begin in the same line or the next, and go on in
+  /// the next line after a comma.
+  void skip_receivers() {
+    const std::int64_t first_line = scan_.line();
+    std::int64_t line = first_line;
+    bool more = true;
+    while (!at_statement() && (more || scan_.line() == line) && !scan_.word().empty()) {
+      line = scan_.line();
+      more = scan_.symbol(',');
+    }
+    end_line(first_line);
   }
 
   static bool multiplexing(std::string_view word, DbcSignal& s) {
@@ -294,7 +224,7 @@ class Parser {
     if (!word.starts_with('m')) return false;
     const auto value = parse_integer(word.substr(1));
     if (!value || *value < 0) return false;
-    s.multiplexed_by = *value;
+    s.present_at = {{static_cast<std::uint64_t>(*value), static_cast<std::uint64_t>(*value)}};
     return true;
   }
 
@@ -330,7 +260,6 @@ class Parser {
 
   /// Reads BA_ "GenMsgCycleTime" BO_ id value and skips other attributes.
   void attribute() {
-    const std::int64_t line = scan_.line();
     const auto name = scan_.quoted();
     if (name && *name == "GenMsgCycleTime" && scan_.peek_word() == "BO_") {
       (void)scan_.word();
@@ -338,11 +267,11 @@ class Parser {
       const auto cycle_ms = scan_.number();
       if (id && cycle_ms && *cycle_ms >= 0) cycles_[*id] = *cycle_ms / 1000;
     }
-    if (!scan_.skip_statement()) problems_.add(line, "BA_ does not end: a ; is missing");
+    if (!scan_.skip_statement()) problems_.add(line_, "BA_ does not end: a ; is missing");
   }
 
   void value_type() {
-    FloatType type{scan_.line(), 0, {}, 0};
+    FloatType type{line_, 0, {}, 0};
     const auto id = scan_.natural();
     type.signal = scan_.word();
     (void)scan_.symbol(':');
@@ -354,46 +283,132 @@ class Parser {
     floats_.push_back(type);
   }
 
-  void apply_value_types() {
-    std::map<std::pair<std::uint64_t, std::string>, DbcSignal*> signals;
-    for (DbcMessage& m : dbc_.messages)
-      for (DbcSignal& s : m.signals)
-        signals.emplace(std::pair(m.id | (m.extended ? kExtendedFlag : 0), s.name), &s);
-    for (const FloatType& type : floats_) {
-      const auto at = signals.find({type.id, type.signal});
-      if (at == signals.end())
-        problems_.add(type.line, fmt::format("SIG_VALTYPE_: message {} has no signal {}", type.id,
-                                             type.signal));
-      else
-        at->second->field.value = type.type == 1   ? CanValue::float32
-                                  : type.type == 2 ? CanValue::float64
-                                                   : CanValue::integer;
+  /// Reads SG_MUL_VAL_ id signal multiplexor least-most, least-most;
+  void switched() {
+    Switched s{line_, 0, {}, {}, {}};
+    const auto id = scan_.natural();
+    s.signal = scan_.word();
+    s.multiplexor = scan_.word();
+    bool good = id && !s.signal.empty() && !s.multiplexor.empty();
+    do {
+      const auto least = scan_.natural();
+      const auto most = scan_.symbol('-') ? scan_.natural() : std::nullopt;
+      const ValueRange range{least.value_or(UINT64_MAX), most.value_or(0)};
+      good = good && least && most && range.least <= range.most;
+      s.values.push_back(range);
+    } while (good && scan_.symbol(','));
+    if (!good || !scan_.symbol(';'))
+      return fail(
+          "SG_MUL_VAL_ is followed by id, signal, multiplexor, ranges such as 1-1, 4-7, "
+          "and ;");
+    s.id = *id;
+    switched_.push_back(std::move(s));
+  }
+
+  /// Adds a contradiction to the messages, both to the second and to the first.
+  static void same(const char* what, DbcMessage& first, DbcMessage& second) {
+    second.contradictions.push_back(
+        {second.line,
+         fmt::format("{} has the {} of {} (line {})", second.name, what, first.name, first.line)});
+    first.contradictions.push_back(
+        {first.line,
+         fmt::format("{} has the {} of {} (line {})", first.name, what, second.name, second.line)});
+  }
+
+  void index_messages() {
+    std::map<std::string, DbcMessage*> names;
+    for (DbcMessage& m : dbc_.messages) {
+      const std::uint64_t id = m.id | (m.extended ? kExtendedFlag : 0);
+      const auto [same_id, new_id] = messages_.emplace(id, &m);
+      if (!new_id) same("id", *same_id->second, m);
+      const auto [same_name, new_name] = names.emplace(m.name, &m);
+      if (!new_name) same("name", *same_name->second, m);
+      if (const auto cycle = cycles_.find(id); cycle != cycles_.end()) m.cycle_s = cycle->second;
+      for (DbcSignal& s : m.signals) signals_.emplace(std::pair(id, std::string_view(s.name)), &s);
     }
   }
 
-  void check_messages() {
-    std::map<std::uint64_t, const DbcMessage*> ids;
-    std::map<std::string, const DbcMessage*> names;
+  /// Returns the signal that a statement names. Returns null, with a contradiction of the message,
+  /// when the message has no such signal, and null when there is no such message.
+  DbcSignal* named(const char* statement, std::int64_t line, std::uint64_t id,
+                   const std::string& signal) {
+    const auto at = signals_.find({id, signal});
+    if (at != signals_.end()) return at->second;
+    const auto message = messages_.find(id);
+    if (message != messages_.end())
+      message->second->contradictions.push_back(
+          {line, fmt::format("{}: message {} has no signal {}", statement, id, signal)});
+    return nullptr;
+  }
+
+  void apply_value_types() {
+    for (const FloatType& type : floats_)
+      if (DbcSignal* s = named("SIG_VALTYPE_", type.line, type.id, type.signal))
+        s->field.value = type.type == 1   ? CanValue::float32
+                         : type.type == 2 ? CanValue::float64
+                                          : CanValue::integer;
+  }
+
+  /// Takes multiplexor and values from SG_MUL_VAL_. The number after m is one of the values.
+  void apply_switches() {
+    for (Switched& given : switched_) {
+      DbcSignal* s = named("SG_MUL_VAL_", given.line, given.id, given.signal);
+      if (s == nullptr) continue;
+      const bool first = s->multiplexor.empty();
+      const bool fits = !s->present_at.empty() &&
+                        (first ? std::any_of(given.values.begin(), given.values.end(),
+                                             [&](const ValueRange& range) {
+                                               return s->present_at[0].least >= range.least &&
+                                                      s->present_at[0].least <= range.most;
+                                             })
+                               : s->multiplexor == given.multiplexor);
+      if (!fits)
+        messages_.at(given.id)->contradictions.push_back(
+            {given.line,
+             fmt::format("SG_MUL_VAL_ contradicts signal {} (line {})", s->name, s->line)});
+      if (first) s->present_at.clear();
+      s->multiplexor = given.multiplexor;
+      s->present_at.insert(s->present_at.end(), given.values.begin(), given.values.end());
+    }
+  }
+
+  /// Gives multiplexed signals without SG_MUL_VAL_ the only multiplexor of their message.
+  void find_only_multiplexors() {
     for (DbcMessage& m : dbc_.messages) {
-      const std::uint64_t id = m.id | (m.extended ? kExtendedFlag : 0);
-      const auto [same_id, new_id] = ids.emplace(id, &m);
-      if (!new_id)
-        problems_.add(m.line, fmt::format("{} has the id of {} (line {})", m.name,
-                                          same_id->second->name, same_id->second->line));
-      const auto [same_name, new_name] = names.emplace(m.name, &m);
-      if (!new_name)
-        problems_.add(m.line, fmt::format("{} is the name of another message (line {})", m.name,
-                                          same_name->second->line));
-      if (const auto cycle = cycles_.find(id); cycle != cycles_.end()) m.cycle_s = cycle->second;
+      std::vector<const DbcSignal*> all;
+      for (const DbcSignal& s : m.signals)
+        if (s.is_multiplexor) all.push_back(&s);
+      for (DbcSignal& s : m.signals) {
+        if (s.present_at.empty() || !s.multiplexor.empty()) continue;
+        std::array<const DbcSignal*, 2> others{};
+        for (std::size_t i = 0; i < all.size() && others[1] == nullptr; ++i)
+          if (all[i] != &s) others[others[0] == nullptr ? 0 : 1] = all[i];
+        if (others[0] == nullptr)
+          m.contradictions.push_back(
+              {s.line,
+               fmt::format("signal {} is multiplexed and {} has no multiplexor", s.name, m.name)});
+        else if (others[1] != nullptr)
+          m.contradictions.push_back(
+              {s.line, fmt::format("signal {}: {} has two multiplexors, {} and {}, and no "
+                                   "SG_MUL_VAL_ names the one that "
+                                   "switches it",
+                                   s.name, m.name, others[0]->name, others[1]->name)});
+        else
+          s.multiplexor = others[0]->name;
+      }
     }
   }
 
   DbcScanner scan_;
   FileProblems problems_;
   Dbc dbc_;
+  std::int64_t line_ = 0;  ///< at which the statement begins
   std::optional<DbcMessage> open_;
   bool dropped_ = false;
+  std::map<std::uint64_t, DbcMessage*> messages_;
+  std::map<std::pair<std::uint64_t, std::string_view>, DbcSignal*> signals_;
   std::vector<FloatType> floats_;
+  std::vector<Switched> switched_;
   std::map<std::uint64_t, double> cycles_;
 };
 
@@ -402,12 +417,6 @@ class Parser {
 const DbcSignal* DbcMessage::find(const std::string& signal) const {
   for (const DbcSignal& s : signals)
     if (s.name == signal) return &s;
-  return nullptr;
-}
-
-const DbcSignal* DbcMessage::multiplexor() const {
-  for (const DbcSignal& s : signals)
-    if (s.is_multiplexor && !s.multiplexed_by) return &s;
   return nullptr;
 }
 

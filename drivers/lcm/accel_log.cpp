@@ -215,14 +215,15 @@ std::string write_accel_log(const std::string& path, const Record& record,
 
 std::optional<LogContents> log_contents(const std::string& path, std::vector<Problem>& problems) {
   LogContents contents;
-  std::map<std::string, std::int64_t> kinds;
+  std::map<std::string, std::pair<std::int64_t, std::string>> kinds;
   const bool whole = for_each_event(
       path,
       [&](const LogEvent& event) {
         ++contents.events;
         constexpr std::size_t kMaxChannels = 100'000;
-        if (kinds.size() < kMaxChannels)
-          kinds.emplace(event.channel, fingerprint(event.data).value_or(0));
+        if (kinds.size() < kMaxChannels && !kinds.contains(event.channel))
+          kinds.emplace(event.channel, std::pair(fingerprint(event.data).value_or(0),
+                                                 why_not("accel_t", event.data)));
         return true;
       },
       problems);
@@ -232,12 +233,14 @@ std::optional<LogContents> log_contents(const std::string& path, std::vector<Pro
     return std::nullopt;
   }
   for (const auto& [channel, kind] : kinds) {
-    if (kind == accel_t::getHash())
+    if (kind.first == accel_t::getHash()) {
       contents.accel.push_back(channel);
-    else if (kind == window_estimate_t::getHash())
+    } else if (kind.first == window_estimate_t::getHash()) {
       contents.estimates.push_back(channel);
-    else
+    } else {
       contents.others.push_back(channel);
+      contents.reasons.push_back(kind.second);
+    }
   }
   return contents;
 }

@@ -26,6 +26,7 @@ struct LogContents {
   std::vector<std::string> accel;      ///< channels of accel_t
   std::vector<std::string> estimates;  ///< channels of window_estimate_t
   std::vector<std::string> others;
+  std::vector<std::string> reasons;  ///< of `others`: why the first message is not an accel_t
   std::int64_t events = 0;
 };
 

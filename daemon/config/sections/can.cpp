@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
-#include "daemon/base/file_digest.h"
 #include "daemon/config/keys/can_options.h"
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/suggest.h"
+#include "daemon/config/sections/can_buses.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/sections.h"
 #include "daemon/config/sections/settings.h"
 #include "drivers/dbc/dbc.h"
-#include "drivers/files/standard_streams.h"
+#include "drivers/files/file_problems.h"
+#include "drivers/records/unit_text.h"
 #include "estimator/motion/acquisition.h"
 
 namespace framewatch::daemon {
@@ -25,117 +28,10 @@ namespace {
 
 using drivers::CanMessageMap;
 using drivers::CanNodeMap;
+using drivers::CanSwitch;
 using drivers::CanTiming;
 using drivers::DbcMessage;
 using drivers::DbcSignal;
-
-/// A configured bus and the messages of its DBC files.
-struct CanBusReading {
-  ConfigSection section;
-  std::vector<drivers::DbcMessage> messages;
-  bool known = true;  ///< true if the DBC files could be read
-};
-
-/// A signal with its message, or the reason why it was not found.
-struct CanSignal {
-  const drivers::DbcMessage* message = nullptr;
-  const drivers::DbcSignal* signal = nullptr;
-  std::string problem;
-};
-
-/// Returns the message, or null if `name` is unknown.
-const DbcMessage* find_can_message(const CanBusReading& bus, const std::string& name) {
-  const auto at = std::find_if(bus.messages.begin(), bus.messages.end(),
-                               [&](const DbcMessage& m) { return m.name == name; });
-  return at == bus.messages.end() ? nullptr : &*at;
-}
-
-constexpr std::size_t kLongestInterface = 15;
-
-void read_dbc(const std::string& name, const Config& config, CanBusReading& bus,
-              std::vector<TextProblem>& problems) {
-  const std::filesystem::path beside = drivers::folder_of_paths_in(config.path);
-  const std::string path = (beside / name).string();
-  std::string error;
-  const std::optional<std::string> text = read_text_file(path, error);
-  std::vector<drivers::Problem> found;
-  std::optional<drivers::Dbc> dbc;
-  if (text)
-    dbc = drivers::parse_dbc(path, *text, found);
-  else
-    bus.section.problem("dbc", fmt::format("{}: {}", path, error));
-  for (const drivers::Problem& p : found) problems.push_back({{}, p.message, p.where});
-  bus.known = bus.known && dbc;
-  if (!dbc) return;
-  for (drivers::DbcMessage& message : dbc->messages) {
-    if (find_can_message(bus, message.name) != nullptr)
-      bus.section.problem("dbc", fmt::format("two files have the message {}, the second is {}",
-                                             message.name, path));
-    else
-      bus.messages.push_back(std::move(message));
-  }
-}
-
-/// Reads [[can]] and its DBC files into config.can.buses. `config.path` and the options must be
-/// set.
-std::vector<CanBusReading> read_can_buses(const TomlValue& document, Config& config,
-                                          std::vector<TextProblem>& problems) {
-  std::vector<CanBusReading> out;
-  for (const TomlValue* table : tables_of(document, "can", problems)) {
-    out.push_back({ConfigSection("can", "can", table, {}, problems), {}, true});
-    CanBusReading& bus = out.back();
-    ConfigSection& section = bus.section;
-    auto map = section.read<drivers::CanBusMap>();
-    const double sync_s = section.number("sync_period_s");
-    map.sync_period_us = sync_s > 0 ? 1e6 * sync_s : 1e6 / config.pipeline.options.rate_hz;
-    if (section.good("sync_overflow") && map.sync_overflow == 1)
-      section.problem("sync_overflow", "must be 0 or 2 to 240, got 1");
-    if (section.given("interface") &&
-        (map.interface.empty() || map.interface.size() > kLongestInterface))
-      section.problem("interface",
-                      fmt::format("an interface's name has 1 to {} characters", kLongestInterface));
-    for (const drivers::CanBusMap& other : config.can.buses)
-      if (section.given("interface") && other.interface == map.interface)
-        section.problem("interface", fmt::format("{} has a [[can]] already", map.interface));
-    if (section.good("dbc"))
-      for (const std::string& name : section.texts("dbc")) read_dbc(name, config, bus, problems);
-    else
-      bus.known = false;
-    config.can.buses.push_back(map);
-  }
-  return out;
-}
-
-std::string unknown_can_message(const CanBusReading& bus, const std::string& name) {
-  std::vector<std::string> names;
-  for (const DbcMessage& m : bus.messages) names.push_back(m.name);
-  return fmt::format("no DBC file of the bus has the message {}{}", name,
-                     did_you_mean(name, names));
-}
-
-/// Finds "Message.Signal" in the DBC files of a bus.
-CanSignal find_can_signal(const CanBusReading& bus, const std::string& text) {
-  CanSignal found;
-  const std::size_t dot = text.find('.');
-  if (dot == std::string::npos) {
-    found.problem = fmt::format("expected Message.Signal, got \"{}\"", text);
-    return found;
-  }
-  const std::string message = text.substr(0, dot), signal = text.substr(dot + 1);
-  found.message = find_can_message(bus, message);
-  if (found.message == nullptr) {
-    found.problem = unknown_can_message(bus, message);
-    return found;
-  }
-  found.signal = found.message->find(signal);
-  if (found.signal == nullptr) {
-    std::vector<std::string> names;
-    for (const DbcSignal& s : found.message->signals) names.push_back(s.name);
-    found.problem =
-        fmt::format("message {} has no signal {}{}", message, signal, did_you_mean(signal, names));
-  }
-  return found;
-}
 
 /// A sensor node while it is read: its table, if any, and its channels.
 struct CanNodeReading : CanNodeSettings {
@@ -157,7 +53,9 @@ class CanConfigReader {
     for (std::size_t i = 0; i < config_.sources.size(); ++i)
       if (!config_.sources[i].can.empty()) read_source(i);
     for (CanNodeReading& node : nodes_) finish_node(node);
+    check_used_messages();
     check_ids();
+    config_.doubts = with_file(config_.path, std::move(doubts_));
     drivers::CanMap& can = config_.can;
     can.grid_period_us = 1e6 / config_.pipeline.options.rate_hz;
     std::set<int> sync_buses;
@@ -249,15 +147,23 @@ class CanConfigReader {
     if (found.problem.empty() && std::find(node.messages.begin(), node.messages.end(),
                                            found.message->name) == node.messages.end())
       found.problem = fmt::format("{} is not one of the node's messages", found.message->name);
-    if (found.problem.empty() && found.signal->multiplexed_by)
+    if (found.problem.empty() && !found.signal->multiplexor.empty())
       found.problem = "must not be multiplexed";
     if (!found.problem.empty()) section.problem(key, found.problem);
   }
 
+  /// Returns the value of a key of a channel, or null.
+  const TomlEntry* entry_of(std::size_t channel, std::string_view key) const {
+    const std::string& wanted = config_.pipeline.axes[channel].name;
+    for (const TomlValue& table : document_.find("channel")->value.items)
+      if (const TomlEntry* name = table.find("name"); name != nullptr && name->value.text == wanted)
+        return table.find(key);
+    return nullptr;
+  }
+
   TextPlace place_of_source(std::size_t channel) const {
-    const TomlEntry* channels = document_.find("channel");
-    const TomlEntry* source = channels->value.items[channel].find("source");
-    return source == nullptr ? channels->place : source->place;
+    const TomlEntry* source = entry_of(channel, "source");
+    return source == nullptr ? document_.find("channel")->place : source->place;
   }
 
   void source_problem(std::size_t channel, const std::string& message) {
@@ -335,12 +241,35 @@ class CanConfigReader {
       const CanSignal found = find_can_signal(buses_[*bus], nth(first + s));
       if (!found.problem.empty()) return source_problem(channel, "dbc_signal: " + found.problem);
       add_reading(channel, *node, found, s);
+      if (s == 0) doubt_unit(channel, found);
     }
+  }
+
+  /// Warns of a signal with a unit that the channel does not convert, because it has no scale.
+  void doubt_unit(std::size_t channel, const CanSignal& found) {
+    const std::string& unit = found.signal->unit;
+    if (unit.empty() || entry_of(channel, "scale") != nullptr) return;
+    const estimator::SensorAxis& axis = config_.pipeline.axes[channel];
+    const std::optional<double> factor =
+        axis.is_force ? drivers::newtons_per(unit) : drivers::mps2_per(unit);
+    if (factor && std::abs(*factor - 1) < 1e-9) return;
+    doubts_.push_back(
+        {place_of_source(channel),
+         fmt::format("channel '{}': {}:{} says that {} is in {}, {}, and the channel has no scale, "
+                     "so its values count as {}: {}",
+                     axis.name, found.message->path, found.signal->line, found.signal->name,
+                     drivers::show_text(unit),
+                     factor
+                         ? fmt::format("which is {:g} {}", *factor, axis.is_force ? "N" : "m/s^2")
+                     : axis.is_force ? "which is not a unit of force"
+                                     : "which is not a unit of acceleration",
+                     axis.is_force ? "N" : "m/s^2",
+                     factor ? fmt::format("set scale = {:g}", *factor)
+                            : "use another signal, or set scale if the file is wrong")});
   }
 
   void add_reading(std::size_t channel, CanNodeReading& node, const CanSignal& found, int sample) {
     const DbcMessage& m = *found.message;
-    const DbcSignal* multiplexor = m.multiplexor();
     for (const CanMessageMap& map : node.map.messages)
       for (const drivers::CanReading& r : map.readings)
         if (map.name == m.name && r.name == found.signal->name)
@@ -348,7 +277,7 @@ class CanConfigReader {
               channel,
               fmt::format("dbc_signal: {}.{} is the source of channel '{}' already", m.name, r.name,
                           config_.pipeline.axes[static_cast<std::size_t>(r.axis)].name));
-    CanMessageMap& map = message_map(node, m, multiplexor, found.signal->multiplexed_by);
+    CanMessageMap& map = message_map(node, m, switches_of(m, *found.signal));
     const estimator::SensorAxis& axis = config_.pipeline.axes[channel];
     const estimator::SampleBound bound = estimator::sample_bound(axis);
     const auto [least, most] = std::minmax({bound.least / axis.scale, bound.most / axis.scale});
@@ -356,13 +285,16 @@ class CanConfigReader {
         {found.signal->field, static_cast<int>(channel), sample, found.signal->name, least, most});
   }
 
-  /// Returns the message's map at the multiplexor value of this signal. Creates it if it is
+  /// Returns the map of the part of a message that these multiplexors switch. Creates it if it is
   /// missing.
   CanMessageMap& message_map(CanNodeReading& node, const DbcMessage& m,
-                             const DbcSignal* multiplexor, const std::optional<std::int64_t>& at) {
+                             std::vector<CanSwitch> switches) {
+    const auto same = [](const CanSwitch& a, const CanSwitch& b) {
+      return a.field.start == b.field.start && a.values == b.values;
+    };
     for (CanMessageMap& map : node.map.messages)
-      if (map.name == m.name && map.multiplexor.has_value() == at.has_value() &&
-          (!at || map.multiplexor_value == *at))
+      if (map.name == m.name && std::equal(map.switches.begin(), map.switches.end(),
+                                           switches.begin(), switches.end(), same))
         return map;
     CanMessageMap map;
     map.name = m.name;
@@ -379,10 +311,7 @@ class CanConfigReader {
     }
     map.length = m.length;
     map.fd = m.length > 8;
-    if (at && multiplexor != nullptr) {
-      map.multiplexor = multiplexor->field;
-      map.multiplexor_value = *at;
-    }
+    map.switches = std::move(switches);
     node.map.messages.push_back(std::move(map));
     return node.map.messages.back();
   }
@@ -402,7 +331,7 @@ class CanConfigReader {
     if (stamp.signal != nullptr) {
       const bool carried = std::any_of(node.map.messages.begin(), node.map.messages.end(),
                                        [&](const CanMessageMap& m) { return m.name == opens; });
-      if (!carried) message_map(node, *stamp.message, nullptr, std::nullopt);
+      if (!carried) message_map(node, *stamp.message, {});
       for (CanMessageMap& m : node.map.messages)
         if (m.name == opens)
           (node.map.timing == CanTiming::clock ? m.clock : m.counter) = stamp.signal->field;
@@ -430,6 +359,24 @@ class CanConfigReader {
     config_.can.nodes.push_back(node.map);
   }
 
+  /// Reports the rules that messages with a channel, counter or clock break, at their place in the
+  /// DBC file. The other messages may break them, because their frames are not decoded.
+  void check_used_messages() {
+    std::set<const CanMessage*> used;
+    for (const CanNodeReading& node : nodes_)
+      for (const CanMessageMap& map : node.map.messages)
+        used.insert(find_can_message(buses_[node.bus], map.name));
+    for (const CanBusReading& bus : buses_)
+      for (const CanMessage& message : bus.messages) {
+        if (!used.contains(&message)) continue;
+        std::vector<drivers::Problem> found;
+        drivers::FileProblems file(message.path, found);
+        for (const drivers::DbcRule& rule : broken_rules(message))
+          file.add(rule.line, rule.message);
+        for (const drivers::Problem& p : found) problems_.push_back({{}, p.message, p.where});
+      }
+  }
+
   void check_ids() {
     const auto& nodes = config_.can.nodes;
     for (std::size_t b = 1; b < nodes.size(); ++b)
@@ -453,6 +400,7 @@ class CanConfigReader {
   const TomlValue& document_;
   Config& config_;
   std::vector<TextProblem>& problems_;
+  std::vector<TextProblem> doubts_;
   std::vector<CanBusReading> buses_;
   std::vector<CanNodeReading> nodes_;
 };

@@ -39,7 +39,8 @@ void read_channels(const TomlValue& document, const StructureReading& structure,
                    std::vector<TextProblem>& problems);
 
 /// Reads [[can]], [[can_node]] and the sources of the channels into config.can. Reports problems of
-/// a DBC file at their place in it.
+/// a DBC file at their place in it, those of messages only if the channels need them. Sets
+/// config.doubts.
 void read_can(const TomlValue& document, Config& config, std::vector<TextProblem>& problems);
 
 estimator::EstimatorOptions read_estimator(const TomlValue& document,

@@ -115,6 +115,12 @@ std::string no_channel(const drivers::LogContents& contents, const std::string& 
   const std::string channels =
       fmt::format("accelerations: {}; estimates: {}; other: {}", listed_channels(contents.accel),
                   listed_channels(contents.estimates), listed_channels(contents.others));
+  const std::string wanted = asked.empty() ? "ACCEL" : asked;
+  const auto other = std::find(contents.others.begin(), contents.others.end(), wanted);
+  if (other != contents.others.end() && (contents.accel.empty() || !asked.empty()))
+    return fmt::format("the first message on channel {} is {}; {}", wanted,
+                       contents.reasons[static_cast<std::size_t>(other - contents.others.begin())],
+                       channels);
   if (contents.accel.empty() && contents.estimates.empty())
     return "holds neither accelerations nor estimates; " + channels;
   if (!asked.empty()) return fmt::format("channel {} is not one to convert; {}", asked, channels);

@@ -120,9 +120,15 @@ ChannelColumns columns_of_dbc(const std::string& path, const std::string& interf
   const auto dbc = drivers::parse_dbc(path, *text, problems);
   out.problem = lines_of(problems);
   if (!dbc) return out;
-  for (const drivers::DbcMessage& message : dbc->messages)
+  for (const drivers::DbcMessage& message : dbc->messages) {
+    const std::vector<drivers::DbcRule> broken = broken_rules(message);
+    bool noted = broken.empty();
     for (const drivers::DbcSignal& signal : message.signals)
       if (const auto scale = drivers::mps2_per(signal.unit); scale && !signal.is_multiplexor) {
+        if (!std::exchange(noted, true))
+          out.notes.push_back(fmt::format("{}:{}: {} is left out: {}", path, broken[0].line,
+                                          message.name, broken[0].message));
+        if (!broken.empty()) continue;
         const std::string name = message.name + "." + signal.name;
         out.columns.push_back(
             {name,
@@ -130,6 +136,7 @@ ChannelColumns columns_of_dbc(const std::string& path, const std::string& interf
              *scale,
              {}});
       }
+  }
   if (out.columns.empty())
     out.problem = path + ": no signal has a unit of acceleration (g, mg, gal, m/s^2)";
   return out;

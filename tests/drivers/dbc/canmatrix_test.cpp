@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cmath>
@@ -88,8 +89,9 @@ TEST(Dbc, DecodesAsCanmatrixDoes) {
           frames += fmt::format("{:02x}", byte = static_cast<std::uint8_t>(random()));
         frames += "\n";
         for (const DbcSignal& s : m.signals) {
-          const DbcSignal* multiplexor = m.multiplexor();
-          if (s.multiplexed_by && raw_integer(multiplexor->field, data) != *s.multiplexed_by)
+          const std::vector<CanSwitch> switches = switches_of(m, s);
+          if (!std::all_of(switches.begin(), switches.end(),
+                           [&](const CanSwitch& multiplexor) { return is_on(multiplexor, data); }))
             continue;
           ours += fmt::format("{}.{} {:.17g}\n", m.name, s.name, physical(s.field, data));
         }
