@@ -12,6 +12,7 @@
 namespace framewatch::drivers {
 namespace {
 
+constexpr std::int64_t kHeadLines = 10;
 constexpr std::uint32_t kErrorFlag = 0x20000000u;
 
 int hex_digit(char c) {
@@ -26,17 +27,17 @@ std::optional<std::int64_t> digits(std::string_view text) {
   return unsigned_digits ? parse_integer(text) : std::nullopt;
 }
 
-/// Removes "(seconds.microseconds) " from the beginning of the line.
+/// Removes "(seconds.microseconds) " or "(seconds.nanoseconds) " from the beginning of the line.
 bool take_stamp(std::string_view& line, std::int64_t& stamp_us) {
   constexpr std::int64_t kMaxSeconds = std::int64_t{1} << 33;
   const std::size_t dot = line.find('.'), close = line.find(')');
   if (line.empty() || line.front() != '(' || dot == std::string_view::npos ||
-      close == std::string_view::npos || close != dot + 7)
+      close == std::string_view::npos || (close != dot + 7 && close != dot + 10))
     return false;
   const auto seconds = digits(line.substr(1, dot - 1));
-  const auto micros = digits(line.substr(dot + 1, 6));
-  if (!seconds || !micros || *seconds > kMaxSeconds) return false;
-  stamp_us = 1'000'000 * *seconds + *micros;
+  const auto decimals = digits(line.substr(dot + 1, close - dot - 1));
+  if (!seconds || !decimals || *seconds > kMaxSeconds) return false;
+  stamp_us = 1'000'000 * *seconds + (close == dot + 7 ? *decimals : *decimals / 1000);
   line.remove_prefix(close + 1);
   while (line.starts_with(' ')) line.remove_prefix(1);
   return true;
@@ -82,6 +83,10 @@ bool read_data(std::string_view text, CanFrame& frame) {
   return true;
 }
 
+bool is_remark(std::string_view line) {
+  return line.empty() || line.front() == '#';
+}
+
 }  // namespace
 
 bool parse_candump_line(std::string_view line, CanFrame& frame, std::string_view& interface,
@@ -92,7 +97,8 @@ bool parse_candump_line(std::string_view line, CanFrame& frame, std::string_view
     rule = why;
     return false;
   };
-  if (!take_stamp(line, frame.stamp_us)) return fail("does not begin with (seconds.microseconds)");
+  if (!take_stamp(line, frame.stamp_us))
+    return fail("does not begin with (seconds.decimals), with 6 or 9 decimals");
   if (!take_word(line, interface) || interface.size() > 15) return fail("names no interface");
   if (!take_word(line, text)) return fail("has no frame after the interface");
   const std::size_t hash = text.find('#');
@@ -140,19 +146,19 @@ bool looks_like_candump(const std::string& path) {
   std::string_view line, interface;
   std::string rule;
   CanFrame frame;
-  return lines.next(line) && parse_candump_line(line, frame, interface, rule);
+  while (lines.number() < kHeadLines && lines.next(line))
+    if (parse_candump_line(line, frame, interface, rule)) return true;
+  return false;
 }
 
-bool read_candump(const std::string& path,
-                  const std::function<void(const CanFrame&, std::string_view interface)>& take,
-                  std::vector<Problem>& found) {
+bool read_candump(const std::string& path, const TakeCanFrame& take, std::vector<Problem>& found) {
   FileProblems problems(path, found);
   LineReader lines(problems);
   std::string_view line, interface;
   std::string rule;
   CanFrame frame;
   while (lines.next(line)) {
-    if (line.empty()) continue;
+    if (is_remark(line)) continue;
     if (parse_candump_line(line, frame, interface, rule))
       take(frame, interface);
     else

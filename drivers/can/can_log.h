@@ -13,27 +13,26 @@
 
 namespace framewatch::drivers {
 
-/// Parses a line as `candump -l` writes it: "(1631416514.717133) can0 0D0#A8FF00000000FF01". Ids of
-/// eight digits have 29 bits. "##" with a digit of flags marks CAN FD and "#R" a remote frame; the
-/// flag 20000000 in an id marks an error frame. Returns false and sets `rule` to the rule that the
-/// line breaks.
+/// Takes a frame of a log and the name of its interface.
+using TakeCanFrame = std::function<void(const CanFrame&, std::string_view interface)>;
+
+/// Parses a line as `candump -l` writes it: "(1631416514.717133) can0 0D0#A8FF00000000FF01". The
+/// stamp has six decimals, or nine (`candump -l -N`), of which six are used. Ids of eight digits
+/// have 29 bits. "##" with a digit of flags marks CAN FD and "#R" a remote frame; the flag 20000000
+/// in an id marks an error frame. Returns false and sets `rule` to the rule that the line breaks.
 bool parse_candump_line(std::string_view line, CanFrame& frame, std::string_view& interface,
                         std::string& rule);
 
 /// Returns the line that `candump -l` would write, without a line end.
 std::string candump_line(const CanFrame& frame, std::string_view interface);
 
-/// Approximate bytes of a candump line without its data.
-inline constexpr std::int64_t kCandumpLineBytes = 29;
-
-/// Returns true if a file begins like a `candump -l` log.
+/// Returns true if one of the first ten lines of a file is of a `candump -l` log.
 bool looks_like_candump(const std::string& path);
 
 /// Calls `take` for every frame of a `candump -l` log, plain or gzip, with the name of its
-/// interface. Returns false when there was a problem. Skips lines that are not frames and appends a
-/// problem at path:line for the first 20 of them.
-bool read_candump(const std::string& path,
-                  const std::function<void(const CanFrame&, std::string_view interface)>& take,
+/// interface. Returns false when there was a problem. Skips remarks, which begin with #, and lines
+/// that are not frames, and appends a problem at path:line for the first 20 of the latter.
+bool read_candump(const std::string& path, const TakeCanFrame& take,
                   std::vector<Problem>& problems);
 
 /// Writes frames as `candump -l` does. The file is PATH.partial until close(). Each function

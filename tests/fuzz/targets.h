@@ -20,7 +20,7 @@ struct FuzzTarget {
 
 extern const FuzzTarget kPacketTarget, kMessagesTarget, kPageTarget, kSamplesTarget;
 extern const FuzzTarget kLogTarget, kRecordTarget, kMiniseedTarget, kMatTarget, kStationXmlTarget;
-extern const FuzzTarget kCanTarget, kCandumpTarget, kDbcTarget;
+extern const FuzzTarget kCanTarget, kCandumpTarget, kVectorLogTarget, kDbcTarget;
 extern const FuzzTarget kConfigTarget, kScenarioTarget, kExpectationTarget, kBaselineTarget;
 extern const FuzzTarget kStateTarget, kDatabaseTarget, kSessionTarget;
 extern const FuzzTarget kHttpTarget, kCommandTarget;

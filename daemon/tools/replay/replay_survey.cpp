@@ -15,7 +15,7 @@
 #include "daemon/base/words.h"
 #include "daemon/config/channel_addresses.h"
 #include "daemon/config/header_differences.h"
-#include "drivers/can/can_log.h"
+#include "drivers/can/can_log_file.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/lcm/count_block.h"
@@ -74,7 +74,9 @@ void ReplaySurvey::add_fault(std::string message) {
 void ReplaySurvey::declare(const RecordFileArguments& arguments) {
   std::vector<drivers::Problem> found;
   record_options_ = record_options(arguments, found);
-  declared_ = arguments.any();
+  RecordFileArguments of_records = arguments;
+  of_records.zone.clear();
+  declared_ = of_records.any();
   misdeclared_ = !found.empty();
   for (const drivers::Problem& p : found)
     problems_.push_back(fmt::format("{}: {}", p.where, p.message));
@@ -92,9 +94,11 @@ void ReplaySurvey::add(const std::string& path) {
     problems_.push_back(fmt::format("{}: {}", path, failure.message()));
   } else if (size == 0) {
     problems_.push_back(fmt::format("{}: is empty", path));
-  } else if (drivers::looks_like_candump(path)) {
-    add_candump(path);
+  } else if (drivers::can_log_format(path) != drivers::CanLogFormat::none) {
+    add_can_log(path);
     bytes_ += static_cast<std::int64_t>(size);
+  } else if (const std::string unread = drivers::unread_can_log(path); !unread.empty()) {
+    problems_.push_back(fmt::format("{}: {}", path, unread));
   } else if (!looks_like_record(path)) {
     add_log(path);
     bytes_ += static_cast<std::int64_t>(size);
@@ -230,12 +234,14 @@ void ReplaySurvey::add_log(const std::string& path) {
   inputs_.push_back({path, false, {}, {}});
 }
 
-void ReplaySurvey::add_candump(const std::string& path) {
+void ReplaySurvey::add_can_log(const std::string& path) {
   if (config_.can.empty()) {
-    problems_.push_back(fmt::format(
-        "{}: is a candump log, and no channel of {} has a source on CAN", path, config_.path));
+    problems_.push_back(
+        fmt::format("{}: is a log of CAN frames, and no channel of {} has a source on CAN", path,
+                    config_.path));
     return;
   }
+  any_dated_ = any_dated_ || drivers::can_log_format(path) != drivers::CanLogFormat::candump;
   drivers::CanIntake unfed(config_.can, [](const estimator::AccelSample&) {});
   const drivers::CanIntake& intake = estimation_ != nullptr ? estimation_->can() : unfed;
   const auto taken = [&] {
@@ -246,11 +252,12 @@ void ReplaySurvey::add_candump(const std::string& path) {
   const std::int64_t before = taken();
   std::map<std::string, std::int64_t, std::less<>> others;
   std::vector<drivers::Problem> found;
-  std::int64_t first_us = INT64_MAX, last_us = INT64_MIN, line_bytes = 0;
-  drivers::read_candump(
-      path,
+  std::vector<std::string> unknown;
+  std::int64_t first_us = INT64_MAX, last_us = INT64_MIN;
+  const std::int64_t bytes_before = drivers::bytes_read();
+  drivers::read_can_log(
+      path, record_options_.zone_min,
       [&](const drivers::CanFrame& frame, std::string_view interface) {
-        line_bytes += drivers::kCandumpLineBytes + 2 * frame.length;
         const int bus = intake.bus_of(interface);
         if (bus < 0) {
           const auto at = others.find(interface);
@@ -260,13 +267,14 @@ void ReplaySurvey::add_candump(const std::string& path) {
         if (outside(frame.stamp_us) || ended_()) return;
         first_us = std::min(first_us, frame.stamp_us);
         last_us = std::max(last_us, frame.stamp_us);
-        if (step_) step_(bytes_ + line_bytes, frame.stamp_us);
+        if (step_) step_(bytes_ + drivers::bytes_read() - bytes_before, frame.stamp_us);
         if (estimation_ != nullptr)
           estimation_->frame(bus, frame);
         else
           unfed.frame(bus, frame);
       },
-      found);
+      unknown, found);
+  for (const std::string& note : unknown) notes_.push_back(fmt::format("{}: {}", path, note));
   for (const drivers::Problem& p : found) add_fault(fmt::format("{}: {}", p.where, p.message));
   for (const auto& [interface, count] : others)
     notes_.push_back(fmt::format("{}: ignored {} frames of {}, an interface that {} does not use",
@@ -274,7 +282,7 @@ void ReplaySurvey::add_candump(const std::string& path) {
   if (taken() == before && !spanned_)
     problems_.push_back(fmt::format("{}: no frame for the channels of {}", path, config_.path));
   if (first_us <= last_us) extend(path, first_us, last_us);
-  inputs_.push_back({path, false, {}, {}});
+  inputs_.push_back({path, false, {}, {}, record_options_.zone_min});
 }
 
 void ReplaySurvey::take_event(const drivers::LogEvent& event, LogSeen& seen) {
@@ -346,7 +354,7 @@ void ReplaySurvey::finish() {
   const bool only_logs = std::none_of(inputs_.begin(), inputs_.end(),
                                       [](const ReplayInput& input) { return input.is_record; });
   if (!only_logs || !problems_.empty()) return;
-  if (declared_)
+  if (declared_ || (record_options_.zone_min && !any_dated_))
     problems_.push_back("--unit, --step and the like are for record files: a log contains them");
   const std::string names = listed(any_raw_ ? counts_.missing() : intake().binding().unbound());
   if (!names.empty())

@@ -20,12 +20,13 @@
 
 namespace framewatch::daemon {
 
-/// One file to replay: an LCM event log, a candump log, or a record held in memory.
+/// One file to replay: an LCM event log, a log of CAN frames, or a record held in memory.
 struct ReplayInput {
   std::string path;
   bool is_record = false;
   drivers::Record record;
-  std::vector<int> axis_of_column;  ///< of the record; -1: no axis is named like the column
+  std::vector<int> axis_of_column;   ///< of the record; -1: no axis is named like the column
+  std::optional<int> zone_min = {};  ///< of a log's dates: local time minus UTC
 };
 
 /// Part of the input to replay, in seconds after zero_us. The rest is ignored.
@@ -110,7 +111,7 @@ class ReplaySurvey {
     return estimation_ != nullptr ? estimation_->intake() : intake_;
   }
   void add_log(const std::string& path);
-  void add_candump(const std::string& path);
+  void add_can_log(const std::string& path);
   void take_event(const drivers::LogEvent& event, LogSeen& seen);
   void take_counts(const drivers::LogEvent& event, LogSeen& seen);
   void judge_raw_log(const std::string& path, const LogSeen& seen);
@@ -125,6 +126,7 @@ class ReplaySurvey {
   bool salvage_;
   drivers::RecordOptions record_options_;
   bool declared_ = false, misdeclared_ = false;
+  bool any_dated_ = false;  ///< a log of CAN frames has local dates, to which --zone applies
   ReplaySpan span_;
   bool spanned_;
   bool goes_on_ = false;

@@ -8,7 +8,7 @@
 #include "daemon/config/channel_addresses.h"
 #include "daemon/tools/replay/counts_intake.h"
 #include "drivers/can/can_intake.h"
-#include "drivers/can/can_log.h"
+#include "drivers/can/can_log_file.h"
 #include "drivers/lcm/lcm_log.h"
 
 namespace framewatch::daemon {
@@ -40,17 +40,18 @@ std::string push_log(const Config& config, const std::string& path, drivers::Acc
   return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
 }
 
-/// Ignores lines that are not frames: the survey has reported them.
-void push_candump(const Config& config, const std::string& path,
+/// Ignores what is malformed: the survey has reported it.
+void push_can_log(const Config& config, const ReplayInput& input,
                   const drivers::AccelIntake::Sink& sink) {
   drivers::CanIntake can(config.can, sink);
   std::vector<drivers::Problem> ignored;
-  drivers::read_candump(
-      path,
+  std::vector<std::string> notes;
+  drivers::read_can_log(
+      input.path, input.zone_min,
       [&](const drivers::CanFrame& frame, std::string_view interface) {
         if (const int bus = can.bus_of(interface); bus >= 0) can.frame(bus, frame);
       },
-      ignored);
+      notes, ignored);
   can.finish();
 }
 
@@ -59,8 +60,8 @@ void push_candump(const Config& config, const std::string& path,
 std::string push_stored_samples(const Config& config, const ReplayInput& input,
                                 drivers::AccelIntake& intake,
                                 const drivers::AccelIntake::Sink& sink) {
-  if (!input.is_record && drivers::looks_like_candump(input.path)) {
-    push_candump(config, input.path, sink);
+  if (!input.is_record && drivers::can_log_format(input.path) != drivers::CanLogFormat::none) {
+    push_can_log(config, input, sink);
     return {};
   }
   if (!input.is_record) return push_log(config, input.path, intake, sink);
