@@ -112,7 +112,7 @@ TEST(ConfigCan, PassesOverMessagesWithoutAChannel) {
   expect(used("Diagnostic.Lamp"), "n.dbc:10: Diagnostic: no CAN frame has 14 bytes");
   expect(used("Other.A"), "n.dbc:14: signal ALow overlaps A (line 13)");
   expect(used("Switched.S2"), "n.dbc:18: signal S2: Switched has two multiplexors, S0 and T0");
-  const std::string twice = kDbc + R"(BO_ 384 Again: 8 A
+  const std::string twice = std::string(kDbc) + R"(BO_ 384 Again: 8 A
 )";
   expect(problems_of(kX, kBus, twice), "n.dbc:4: Accel has the id of Again (line 10)");
 }
