@@ -170,6 +170,7 @@ TEST_F(DamagedHistory, BeginsAnewWhenTheDatabaseIsMovedRemovedOrReplaced) {
     EXPECT_NE(history.counters().set_aside.reason.find("removed or replaced"), std::string::npos);
     EXPECT_EQ(history.counters().trouble, "") << how;
   };
+  history.message("FRAMEWATCH_EVENT", drivers::encoded(gap(id)));
   ASSERT_TRUE(comes_true([&] { return history.counters().commits > 0; }, kSoon));
   fs::rename(database(), moved);
   expect_another("moved");
