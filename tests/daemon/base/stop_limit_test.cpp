@@ -14,7 +14,7 @@ namespace stop_limit_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kLimit = 300ms, kFarBeyond = 2s;
+constexpr std::chrono::milliseconds kLimit = 300ms, kFarBeyond = 2s;
 
 TEST(StopLimit, GivesUpAndSaysWhatIsLeft) {
   std::atomic<bool> requested = false, gave_up = false;
