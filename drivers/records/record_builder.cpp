@@ -269,13 +269,17 @@ std::optional<Record> merge_records(std::vector<Record> records,
     merged.time_s.push_back(grid_time(records[0], at));
   const bool any_header = std::any_of(records.begin(), records.end(),
                                       [](const Record& r) { return !r.headers.empty(); });
+  // Whoever shows the notes of one file names it.
+  const bool one_file = std::all_of(where.begin(), where.end(),
+                                    [&](const std::string& file) { return file == where[0]; });
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Placed& p = places[i];
+    const std::string from = one_file ? "" : where[i] + ": ";
     for (const std::string& note : records[i].notes)
-      if (!holds(common, note)) merged.notes.push_back(fmt::format("{}: {}", where[i], note));
+      if (!holds(common, note)) merged.notes.push_back(from + note);
     if (span == MergeSpan::common && (p.first < first || p.last > last))
       merged.notes.push_back(fmt::format(
-          "{}: {} instants outside the common span left out", where[i],
+          "{}{} instants outside the common span left out", from,
           std::max<std::int64_t>(0, first - p.first) + std::max<std::int64_t>(0, p.last - last)));
     for (std::size_t c = 0; c < records[i].names.size(); ++c) {
       merged.names.push_back(records[i].names[c]);
