@@ -18,7 +18,7 @@ class BlfWriter {
  public:
   /// Appends a number of `bytes` bytes, little-endian.
   static void put(std::string& to, std::uint64_t value, int bytes) {
-    for (int i = 0; i < bytes; ++i) to += static_cast<char>(value >> (8 * i));
+    for (int i = 0; i < bytes; ++i, value >>= 8) to += static_cast<char>(value);
   }
 
   /// Returns an object with a header of version 1 or 2. `stamp` is in nanoseconds, or with
