@@ -269,7 +269,7 @@ std::optional<Record> merge_records(std::vector<Record> records,
     merged.time_s.push_back(grid_time(records[0], at));
   const bool any_header = std::any_of(records.begin(), records.end(),
                                       [](const Record& r) { return !r.headers.empty(); });
-  // Whoever shows the notes of one file names it.
+  // The caller names the file beside its notes.
   const bool one_file = std::all_of(where.begin(), where.end(),
                                     [&](const std::string& file) { return file == where[0]; });
   for (std::size_t i = 0; i < records.size(); ++i) {
