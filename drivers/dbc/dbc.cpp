@@ -328,8 +328,8 @@ class Parser {
     }
   }
 
-  /// Returns the signal that a statement names. Returns null, with a contradiction of the message,
-  /// when the message has no such signal, and null when there is no such message.
+  /// Returns the signal that a statement names, or null. If the message exists without the signal,
+  /// the message gets a contradiction.
   DbcSignal* named(const char* statement, std::int64_t line, std::uint64_t id,
                    const std::string& signal) {
     const auto at = signals_.find({id, signal});

@@ -26,7 +26,7 @@ class DbcScanner {
   bool skip_statement();
 
   /// Reads a name of letters, digits and _ that does not begin with a digit. Returns an empty text
-  /// when there is no name.
+  /// when something else stands here.
   std::string_view word();
   /// Returns what word() would return, without consuming it.
   std::string_view peek_word();

@@ -69,8 +69,8 @@ class EsmReader {
   }
 
  private:
-  /// Reads the lines of KEY: value and leaves `line` at the first value. Returns false when there
-  /// is no value.
+  /// Reads the lines of KEY: value and leaves `line` at the first value. Returns false if the
+  /// file ends before a value.
   bool read_header(std::string_view& line) {
     while (lines_.next(line)) {
       if (parse_number(trimmed(line))) return true;

@@ -24,6 +24,8 @@ namespace framewatch::estimator {
 /// A pass begins when a block closes and takes steps(), spread over the instants of the next block.
 class InfluentialPart {
  public:
+  static constexpr double kExplained = 2;  ///< errors that noise alone exceeds in 5 of 100 cases
+
   /// most_blocks: most blocks of a window. compensation: share of the noise, see
   /// NoiseCompensation.
   InfluentialPart(const FloorLayout& layout, int most_blocks, double compensation);
@@ -92,7 +94,6 @@ class InfluentialPart {
 
  private:
   static constexpr int kParts = 5, kMaxBlocks = 1 << 20;
-  static constexpr double kExplained = 2;  ///< moves by noise alone are below it in 95 of 100
   int most_influential(const GramShape& shape, int part);
   void begin(const GramShape& shape, const StorySolver& solver, const std::vector<double>& prior,
              const std::vector<double>& centre, const NoiseCompensation& noise);

@@ -16,8 +16,7 @@ constexpr double kInflation = 4;  // correlated residuals overstate the informat
 constexpr double kSymmetric = 0.02;
 constexpr double kHeld = 0.01;  // relative width of the prior of a held unknown
 constexpr double kRounding = 1e-12;
-constexpr double kExplained = 2;  // standard errors
-constexpr int kFirstPasses = 5;   // until the noise level no longer changes
+constexpr int kFirstPasses = 5;  // until the noise level no longer changes
 /// Largest level of known noise in groups, whose residual usually comes from the model.
 constexpr double kMaxOfKnownNoise = 2;
 
@@ -140,7 +139,7 @@ void WindowSolution::rescale(int unknown, double factor) {
 double WindowSolution::present_error(int unknown) const {
   const auto u = static_cast<std::size_t>(unknown);
   const double moved = std::abs(solver_.solution()[u] - checked_[u]);
-  return std::max(std_error_[u], moved - kExplained * std_error_[u]);
+  return std::max(std_error_[u], moved - InfluentialPart::kExplained * std_error_[u]);
 }
 
 double WindowSolution::misfit(int unknown) const {

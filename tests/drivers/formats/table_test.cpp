@@ -215,7 +215,7 @@ TEST_F(Table, ReadsTheHeaderOfGcdcLoggersInTheirRemarks) {
       ";Headers, time,a\n0.000,0.5\n0.010,-1\n;shutdown: a, b\n",
       2);
   options_.unit_mps2 = 1;
-  expect_read("Time;a\n0;0,5\n0,01;-1\n");  // a row of such a table is no remark
+  expect_read("Time;a\n0;0,5\n0,01;-1\n");  // where ; separates columns, it begins no remark
   expect_refused("Time;a [g]\n;0,5\n0,01;-1\n", 2, {"time \"\""});
 }
 

@@ -4,13 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "drivers/formats/record_file.h"
 #include "drivers/stations/station_words.h"
+#include "tests/drivers/stations/station_fixture.h"
 #include "tests/support/station_files.h"
-#include "tests/support/temporary.h"
 
 namespace framewatch::drivers {
 namespace network_files_test {
@@ -19,37 +18,12 @@ using test::csmip;
 using test::CsmipText;
 using test::esm;
 using test::geonet;
+using test::replaced;
 
 constexpr double kG = 9.80665;
 constexpr double kNorthridge_utc_s = 758809864.1;  // 1994-01-17T12:31:04.1Z
 
-class NetworkFile : public testing::Test {
- protected:
-  std::optional<Record> read(const std::string& text, const RecordOptions& options = {}) {
-    test::write_file(path_, text);
-    problems_.clear();
-    return read_record(path_, options, problems_);
-  }
-  void expect_refused(const std::string& text, int line, const std::string& rule,
-                      const RecordOptions& options = {}) {
-    SCOPED_TRACE(rule);
-    EXPECT_FALSE(read(text, options));
-    ASSERT_FALSE(problems_.empty());
-    EXPECT_EQ(problems_[0].where, line > 0 ? fmt::format("{}:{}", path_, line) : path_)
-        << problems_[0].message;
-    EXPECT_NE(problems_[0].message.find(rule), std::string::npos) << problems_[0].message;
-  }
-
-  test::TemporaryDirectory directory_;
-  std::string path_ = directory_.path("station.dat");
-  std::vector<Problem> problems_;
-};
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return at == std::string::npos ? text : text.replace(at, what.size(), by);
-}
+class NetworkFile : public test::StationFileTest {};
 
 TEST_F(NetworkFile, ReadsCsmipVolume1WithItsHeader) {
   const auto r = read(csmip());

@@ -7,14 +7,13 @@
 #include <numeric>
 #include <utility>
 
-#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "drivers/formats/record_file.h"
 #include "drivers/records/record_builder.h"
+#include "tests/drivers/stations/station_fixture.h"
 #include "tests/support/data.h"
 #include "tests/support/station_files.h"
-#include "tests/support/temporary.h"
 
 namespace framewatch::drivers {
 namespace station_files_test {
@@ -22,40 +21,14 @@ namespace station_files_test {
 using test::cosmos;
 using test::CosmosChannel;
 using test::knet;
+using test::replaced;
 using test::sac;
 using test::smc;
 
 constexpr double kG = 9.80665;
 constexpr double kStart_utc_s = 1543598946;  // 2018-11-30T17:29:06Z
 
-class StationFile : public testing::Test {
- protected:
-  std::optional<Record> read(const std::string& text, const RecordOptions& options = {}) {
-    test::write_file(path_, text);
-    problems_.clear();
-    return read_record(path_, options, problems_);
-  }
-  void expect_refused(const std::string& text, int line, const std::string& rule,
-                      const RecordOptions& options = {}) {
-    SCOPED_TRACE(rule);
-    EXPECT_FALSE(read(text, options));
-    ASSERT_FALSE(problems_.empty());
-    if (line >= 0) {  // -1: at any line
-      EXPECT_EQ(problems_[0].where, line > 0 ? fmt::format("{}:{}", path_, line) : path_);
-    }
-    EXPECT_NE(problems_[0].message.find(rule), std::string::npos) << problems_[0].message;
-  }
-
-  test::TemporaryDirectory directory_;
-  std::string path_ = directory_.path("station.dat");
-  std::vector<Problem> problems_;
-};
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return at == std::string::npos ? text : text.replace(at, what.size(), by);
-}
+class StationFile : public test::StationFileTest {};
 
 TEST_F(StationFile, ReadsNameUnitStartAndDirectionFromCosmos) {
   const auto r = read(cosmos());

@@ -28,7 +28,8 @@ struct Case {
   const char* status;  ///< empty: closed without an answer
 };
 
-/// Returns the three digits of the status of an HTTP answer, or an empty text if `answer` is none.
+/// Returns the three digits of the status of an HTTP answer, or an empty text if `answer` does not
+/// begin as one.
 std::string status_of(const std::string& answer) {
   return answer.starts_with("HTTP/1.1 ") ? answer.substr(9, 3) : "";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The same frames in every format of CAN logs, with every name of an interface, give the same.
+// A CAN log gives the same samples in every format, whatever name the interface has.
 #include <algorithm>
 #include <optional>
 #include <string>

@@ -74,22 +74,28 @@ class RawLogReplay : public test::ReplayFixture {
       return true;
     });
   }
+  /// Writes building.toml with this folder as its history. Returns a log of the history's raw
+  /// samples.
+  std::string exported(const std::string& folder) {
+    const std::string config = path("building.toml");
+    test::write_file(config, test::read_file(test::table_config()) + "\n[history]\ndirectory = \"" +
+                                 path(folder) + "\"\n");
+    testing::internal::CaptureStdout();
+    HistoryArguments arguments;
+    arguments.place = config;
+    arguments.raw = path("exported.lcmlog");
+    EXPECT_EQ(history(arguments), 0);
+    testing::internal::GetCapturedStdout();
+    return arguments.raw;
+  }
 
   Config config_;
 };
 
 TEST_F(RawLogReplay, GivesTheEstimatesOfItsExportedLog) {
-  const std::string config = path("building.toml");
-  test::write_file(config, test::read_file(test::table_config()) + "\n[history]\ndirectory = \"" +
-                               path("h") + "\"\n");
-  testing::internal::CaptureStdout();
-  HistoryArguments exported;
-  exported.place = config;
-  exported.raw = path("exported.lcmlog");
-  ASSERT_EQ(history(exported), 0);
-  testing::internal::GetCapturedStdout();
+  const std::string config = path("building.toml"), exported = this->exported("h");
   for (const auto& [in, out] :
-       {std::pair(raw_log(), path("a.lcmlog")), std::pair(exported.raw, path("b.lcmlog"))})
+       {std::pair(raw_log(), path("a.lcmlog")), std::pair(exported, path("b.lcmlog"))})
     ASSERT_EQ(test::replay_of({in}, out, false, config).exit_code, 0);
   const auto of_raw = test::payloads(path("a.lcmlog"), "FRAMEWATCH_ESTIMATE");
   EXPECT_GT(of_raw.size(), 300u);
@@ -128,16 +134,7 @@ TEST_F(RawLogReplay, ReadsWhatIsWrittenWhileClocksAreWrong) {
   for (const RawLog& log : raw_logs(raw_folder(path("odd")))) logs.push_back(log.path);
   EXPECT_GT(logs.size(), 5u);
   expect_readable(logs);
-  const std::string config = path("building.toml");
-  test::write_file(config, test::read_file(test::table_config()) + "\n[history]\ndirectory = \"" +
-                               path("odd") + "\"\n");
-  testing::internal::CaptureStdout();
-  HistoryArguments exported;
-  exported.place = config;
-  exported.raw = path("exported.lcmlog");
-  ASSERT_EQ(history(exported), 0);
-  testing::internal::GetCapturedStdout();
-  expect_readable({exported.raw});
+  expect_readable({exported("odd")});
 }
 
 TEST_F(RawLogReplay, ReplaysAPart) {
