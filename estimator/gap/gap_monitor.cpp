@@ -64,6 +64,9 @@ GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxi
       has_law_(static_cast<std::size_t>(table_.size())),
       since_gap_(BaselineLearner::of_any_windows(theta_error_.size())),
       alarm_(options),
+      check_(structure_, axes, rate_hz_),
+      read_(axes.size()),
+      expected_(axes.size()),
       driven_(inputs_.from_axes.rows()),
       noise_variance_(axes.size()) {
   for (const SensorAxis& axis : axes) {
@@ -106,6 +109,7 @@ void GapMonitor::adopt(const GapModel& model) {
   }
   model_ = model;
   current_.emplace(*this, model_);
+  check_.forget();
 }
 
 void GapMonitor::take_inputs() {
@@ -167,15 +171,21 @@ void GapMonitor::hold(Current& c) {
         c.filter.valid(static_cast<int>(a)) ? c.filter.value(static_cast<int>(a)) : kNaN;
 }
 
-void GapMonitor::compare(Current& c) const {
+void GapMonitor::compare(Current& c) {
   const int then = (c.newest + RunningModel::kDelay) % kHeld;
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    const double measured = c.held[static_cast<std::size_t>(then) * axes_.size() + a];
-    if (seen_[a].empty() || !std::isfinite(measured)) continue;
-    double simulated = 0;
-    for (const auto& [dof, weight] : seen_[a]) simulated += weight * c.running.accel_abs(dof);
-    c.meter.add(a, measured, simulated);
+    read_[a] = c.held[static_cast<std::size_t>(then) * axes_.size() + a];
+    expected_[a] = seen_[a].empty() ? kNaN : 0;
+    for (const auto& [dof, weight] : seen_[a]) expected_[a] += weight * c.running.accel_abs(dof);
+    if (std::isfinite(read_[a]) && !seen_[a].empty() && doubted()[a] == 0)
+      c.meter.add(a, read_[a], expected_[a]);
   }
+}
+
+bool GapMonitor::base_doubted() const {
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    if (axes_[a].story == 0 && doubted()[a] != 0) return true;
+  return false;
 }
 
 void GapMonitor::noise_variances(const Current& c, const std::vector<double>& noise_density) {
@@ -187,7 +197,6 @@ void GapMonitor::noise_variances(const Current& c, const std::vector<double>& no
   Eigen::VectorXd driving = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(axes_.size()));
   for (const Eigen::Index a : inputs_.used) driving[a] = variance(static_cast<std::size_t>(a));
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (seen_[a].empty()) continue;
     noise_variance_[a] = variance(a) * c.noise.own();
     for (const auto& [dof, weight] : seen_[a])
       noise_variance_[a] += std::abs(weight) * c.noise.inputs().row(dof).dot(driving);
@@ -196,6 +205,7 @@ void GapMonitor::noise_variances(const Current& c, const std::vector<double>& no
 
 const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double>& noise_density) {
   news_ = nullptr;
+  channel_news_.clear();
   if (driving_.push(set.accel)) take_inputs();
   if (!current_) return nullptr;
   Current& c = *current_;
@@ -219,13 +229,17 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   if (c.settled_s == 0) {
     c.running.restart();
     c.meter.restart();
+    check_.restart();
   }
   c.running.push(driven_);
   c.settled_s += 1 / rate_hz_;
   if (c.settled_s < c.running.settle_s()) return nullptr;
   compare(c);
   if (c.meter.ends_second()) noise_variances(c, noise_density);
+  channel_news_ = check_.push(set.time - c.delay, read_, expected_, noise_variance_);
+  if (!channel_news_.empty()) c.meter.restart();
   if (!c.meter.close(set.time - c.delay, noise_variance_)) return nullptr;
+  if (base_doubted()) return &c.meter.gap();
   news_ = alarm_.push(c.meter.gap());
   if (news_ == nullptr) return &c.meter.gap();
   const GapNews before = named_;

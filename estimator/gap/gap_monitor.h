@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/gap/axis_correction.h"
+#include "estimator/gap/channel_check.h"
 #include "estimator/gap/gap.h"
 #include "estimator/gap/measured_inputs.h"
 #include "estimator/gap/model_learner.h"
@@ -41,6 +42,13 @@ class GapMonitor {
   const GapWindow* push(const SampleSet& set, const std::vector<double>& noise_density);
   /// Returns the alarm that began or ended at the last push(), or null.
   const GapNews* news() const { return news_; }
+  /// Returns the doubts about channels that began, changed or ended at the last push().
+  const std::vector<ChannelNews>& channel_news() const { return channel_news_; }
+  /// Returns true while a channel seems to misread and is not in doubt yet: windows that end now may
+  /// be wrong.
+  bool suspects() const { return check_.suspects(); }
+  /// Returns by axis: 1 if its channel is in doubt. Such a channel does not count in the gap.
+  const std::vector<std::uint8_t>& doubted() const { return check_.doubted(); }
 
   void archive(auto& a) {
     bool modelled = has_model();
@@ -57,6 +65,7 @@ class GapMonitor {
     }
     a(theta_error_);
     if (modelled && has_model()) a(*current_);
+    if (a.since(18)) a(check_);
   }
 
  private:
@@ -88,7 +97,8 @@ class GapMonitor {
   /// Recomputes the inputs from the present axes and restarts the running model.
   void take_inputs();
   void hold(Current& c);
-  void compare(Current& c) const;
+  void compare(Current& c);
+  bool base_doubted() const;
   void noise_variances(const Current& c, const std::vector<double>& noise_density);
   /// Adds the parameter that has changed most significantly to the news.
   void name_place(GapNews& news) const;
@@ -116,7 +126,10 @@ class GapMonitor {
   GapNews named_;                    ///< the last news
   std::optional<Current> current_;
   GapAlarm alarm_;
-  Eigen::VectorXd driven_;  ///< the present inputs
+  ChannelCheck check_;
+  std::vector<ChannelNews> channel_news_;
+  std::vector<double> read_, expected_;  ///< by axis: what check_ compares now
+  Eigen::VectorXd driven_;               ///< the present inputs
   std::vector<double> noise_variance_;
   const GapNews* news_ = nullptr;
 };

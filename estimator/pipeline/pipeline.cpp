@@ -5,6 +5,7 @@
 
 #include "estimator/identify/window/sliding_window_estimator.h"
 #include "estimator/motion/acquisition.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 
@@ -13,10 +14,17 @@ class Pipeline::Implementation {
   explicit Implementation(const PipelineConfig& config)
       : table_(config.parameters()),
         acquisition_(config.axes, config.options),
-        estimator_(config, table_) {}
+        estimator_(config, table_),
+        left_out_(config.axes.size()) {
+    trusted_.accel.resize(config.axes.size());
+  }
 
   void start_tuned(const Tuning& tuning) { estimator_.start_tuned(tuning); }
   Acquisition& acquisition() { return acquisition_; }
+  void leave_out(const std::vector<std::uint8_t>& left_out) {
+    for (std::size_t a = 0; a < left_out_.size(); ++a) wrong_ |= left_out[a] > left_out_[a];
+    left_out_ = left_out;
+  }
 
   /// Returns the next result, valid until the next call, or null.
   const PipelineResult* next() {
@@ -27,6 +35,7 @@ class Pipeline::Implementation {
         if (result_.late != nullptr) return &result_;
         looking_back_ = false;
       }
+      if (std::exchange(wrong_, false)) estimator_.forget_motion();
       if (missing_ > 0) {
         --missing_;
         estimator_.push_missing();
@@ -39,6 +48,10 @@ class Pipeline::Implementation {
         ++sets_;
         missing_ = estimator_.missing_before(*instant_);
         result_.instant = instant_;
+        trusted_.copy(*instant_);
+        for (std::size_t a = 0; a < left_out_.size(); ++a)
+          if (left_out_[a] != 0) trusted_.accel[a] = kNaN;
+        instant_ = result_.trusted = &trusted_;
         return &result_;
       }
       result_.other = estimator_.other();
@@ -58,6 +71,10 @@ class Pipeline::Implementation {
   void archive(Archive& a) {
     a(acquisition_, estimator_);
     for (std::int64_t* count : {&sets_, &windows_}) a.within(*count, 0, a.kMaxCount);
+    if (a.since(18)) {
+      a.each_within(left_out_, 0, 1);
+      a(wrong_);
+    }
   }
 
   const ParameterTable& table() const { return table_; }
@@ -69,7 +86,10 @@ class Pipeline::Implementation {
   Acquisition acquisition_;
   SlidingWindowEstimator estimator_;
   PipelineResult result_;
-  const SampleSet* instant_ = nullptr;  ///< of acquisition_, for the estimator
+  const SampleSet* instant_ = nullptr;  ///< for the estimator
+  SampleSet trusted_;
+  std::vector<std::uint8_t> left_out_;
+  bool wrong_ = false;  ///< samples in the windows are wrong
   int missing_ = 0;                     ///< instants without samples before it
   bool looking_back_ = false;           ///< late windows are asked for
   std::int64_t sets_ = 0, windows_ = 0;
@@ -91,6 +111,9 @@ Pipeline::Results Pipeline::push(const AccelSample& sample) {
 Pipeline::Results Pipeline::finish() {
   implementation_->acquisition().end();
   return Results(*this);
+}
+void Pipeline::leave_out(const std::vector<std::uint8_t>& left_out) {
+  implementation_->leave_out(left_out);
 }
 const PipelineResult* Pipeline::next() {
   return implementation_->next();

@@ -35,6 +35,8 @@ struct PipelineCounters {
 struct PipelineResult {
   /// A calibrated instant. It comes before the estimates that it completes.
   const SampleSet* instant = nullptr;
+  /// The same without the axes of leave_out().
+  const SampleSet* trusted = nullptr;
   /// The estimate of the main window that ends now.
   const WindowEstimate* estimate = nullptr;
   /// The estimate of a window of another length (EstimatorOptions::other_windows_s).
@@ -70,6 +72,10 @@ class Pipeline {
   Results push(const AccelSample& sample);
   /// Ends the input: closes the instants still open, and returns their results.
   Results finish();
+  /// Leaves these axes out of the estimates from the next instant on, as if they delivered nothing.
+  /// If one more is left out than before, its earlier samples were wrong too: all windows begin
+  /// anew. left_out: by axis, 1: left out.
+  void leave_out(const std::vector<std::uint8_t>& left_out);
   /// Returns the next result of the newest push() or finish(), valid until the next call, or null.
   const PipelineResult* next();
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/base/usual_time.h"
+#include "daemon/config/config_size.h"
 #include "daemon/monitor/estimation/estimation_events.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
@@ -109,10 +110,13 @@ void Estimation::begin_watch() {
   recovery_.emplace(*watch_, config_.watch->options);
 }
 
+/// The gap monitor also checks the channels, so [watch] needs it as well.
 void Estimation::begin_gap() {
   gap_.reset();
-  if (!config_.gap) return;
-  gap_.emplace(config_.pipeline, pipeline_.axes(), config_.gap->options, config_.gap->model);
+  const bool simulated = simulated_size_problem(config_.pipeline.structure).empty();
+  if (!config_.gap && !(config_.watch && simulated)) return;
+  const GapSettings settings = config_.gap.value_or(GapSettings{});
+  gap_.emplace(config_.pipeline, pipeline_.axes(), settings.options, settings.model);
 }
 
 void Estimation::follow_shaking(const estimator::SampleSet& instant) {
@@ -148,9 +152,9 @@ void Estimation::add_records(EventReport& report) const {
 void Estimation::take(estimator::Pipeline::Results&& results) {
   for (const estimator::PipelineResult& result : results) {
     if (result.instant != nullptr) {
-      if (watch_) strong_.push(*result.instant);
       compare_gap(*result.instant);
-      follow_shaking(*result.instant);
+      if (watch_) strong_.push(*result.trusted);
+      follow_shaking(*result.trusted);
       listener_->on_instant(*result.instant);
     }
     if (result.estimate != nullptr) {
@@ -176,7 +180,10 @@ void Estimation::take(estimator::Pipeline::Results&& results) {
 void Estimation::compare_gap(const estimator::SampleSet& instant) {
   if (!gap_) return;
   const estimator::GapWindow* window = gap_->push(instant, noise_density_);
-  if (window == nullptr) return;
+  for (const estimator::ChannelNews& news : gap_->channel_news())
+    announce(doubt_event(news, config_.pipeline.axes));
+  if (!gap_->channel_news().empty()) pipeline_.leave_out(gap_->doubted());
+  if (window == nullptr || !config_.gap) return;
   publisher_.gap(*window);
   if (shaking_) shaking_->push_gap(window->nrmse);
   const estimator::GapNews* news = gap_->news();
@@ -186,7 +193,7 @@ void Estimation::compare_gap(const estimator::SampleSet& instant) {
 }
 
 void Estimation::watch(const estimator::WindowEstimate& estimate) {
-  if (!watch_) return;
+  if (!watch_ || (gap_ && gap_->suspects())) return;  // nothing is known of the building then
   for (const estimator::Alarm& alarm : watch_->push(estimate))
     announce(with_recovery(stiffness_event(alarm, pipeline_.parameters()), alarm.parameter));
   follow_recovery(estimate);

@@ -40,6 +40,46 @@ std::string change_words(const estimator::Alarm& alarm, const estimator::Paramet
          (alarm.reason == ChangeReason::further ? "; it has changed further" : "");
 }
 
+/// Larger than the ids of all other events.
+constexpr std::int64_t kFirstDoubtId = std::int64_t{1} << 46;
+
+std::string percent(double ratio) {
+  return fmt::format("{:.{}f} %", 100 * ratio, ratio < 0.1 ? 1 : 0);
+}
+
+std::string fault_words(const estimator::ChannelLaw& law,
+                        const std::vector<estimator::SensorAxis>& axes) {
+  using estimator::ChannelFault;
+  const auto at = static_cast<std::size_t>(law.other);  // may come from a state file
+  const std::string other = at < axes.size() ? axes[at].name : "another channel";
+  switch (law.fault) {
+    case ChannelFault::gain:
+      return fmt::format("reads {} too {}", percent(std::abs(law.value - 1)),
+                         law.value > 1 ? "much" : "little");
+    case ChannelFault::polarity:
+      return "reads the motion with the other sign";
+    case ChannelFault::late:
+      return fmt::format("reads {:.2g} ms too {}", 1e3 * std::abs(law.value),
+                         law.value > 0 ? "late" : "early");
+    case ChannelFault::clock:
+      return fmt::format("has a clock that is {:.2g} ppm too {}", 1e6 * std::abs(law.value),
+                         law.value > 0 ? "fast" : "slow");
+    case ChannelFault::exchanged:
+      return fmt::format("is exchanged with {}", other);
+    case ChannelFault::repeats:
+      return fmt::format("repeats {}", other);
+    case ChannelFault::only_noise:
+      return "does not move with the building";
+    case ChannelFault::saturated:
+      return fmt::format("saturates at {:.2g} m/s^2", law.value);
+    case ChannelFault::bandwidth:
+      return fmt::format("follows the motion only below {:.2g} Hz", law.value);
+    case ChannelFault::unlike:
+      break;
+  }
+  return "reads something else than the building's motion";
+}
+
 }  // namespace
 
 event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
@@ -105,6 +145,29 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
     m.message += fmt::format("; {} is {:.1f} % (+-{:.1f} %) {} the model", m.place,
                              100 * std::abs(news.ratio), 100 * news.std_error,
                              news.ratio < 0 ? "below" : "above");
+  return m;
+}
+
+event_t doubt_event(const estimator::ChannelNews& news,
+                    const std::vector<estimator::SensorAxis>& axes) {
+  const bool over = news.state == estimator::AlarmState::cleared;
+  event_t m{};
+  m.time_us = to_microseconds(news.found);
+  m.since_us = to_microseconds(news.since);
+  m.id = kFirstDoubtId + news.axis;
+  m.state = static_cast<std::int32_t>(news.state);
+  m.severity = over ? severity::information : severity::warning;
+  m.kind = "channel_doubted";
+  m.place = axes[static_cast<std::size_t>(news.axis)].name;
+  m.value = 100 * news.departure;
+  m.std_error = std::numeric_limits<double>::quiet_NaN();
+  m.unit = "%";
+  m.message = m.place + (over ? " reads the building's motion again"
+                              : fmt::format(" {}. It differs by {} from the building's motion, "
+                                            "other channels by at most {}. The estimates do "
+                                            "without it",
+                                            fault_words(news.law, axes), percent(news.departure),
+                                            percent(news.others)));
   return m;
 }
 

@@ -4,6 +4,7 @@
 #include <framewatch/event_t.hpp>
 
 #include "daemon/config/config.h"
+#include "estimator/gap/channel_check.h"
 #include "estimator/gap/gap.h"
 #include "estimator/watch/recovery.h"
 #include "estimator/watch/watch.h"
@@ -26,6 +27,11 @@ event_t renewed(event_t raised, estimator::Time now);
 /// value in %. The place is the stiffness that has changed, or the channel with the largest gap if
 /// the change is not located.
 event_t gap_event(const estimator::GapNews& news, const Config& config);
+
+/// Returns news of a channel that misreads as an event of kind "channel_doubted". Its value is the
+/// share of the reading that is not the building's motion, in %.
+event_t doubt_event(const estimator::ChannelNews& news,
+                    const std::vector<estimator::SensorAxis>& axes);
 
 /// Returns the end of a raised event that the new configuration does not monitor.
 event_t withdrawn(event_t raised);

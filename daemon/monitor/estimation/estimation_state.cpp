@@ -44,7 +44,7 @@ std::vector<std::string> kinds_of(const std::string& section) {
   if (section == "window")
     return {"absurd_samples", "channel_silent", "channel_stuck", "channel_rate", "channel_clock"};
   if (section == "watch") return {"stiffness_change"};
-  if (section == "gap") return {"gap"};
+  if (section == "gap") return {"gap", "channel_doubted"};
   return {};
 }
 

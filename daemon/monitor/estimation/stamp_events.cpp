@@ -18,6 +18,8 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::int64_t kFirstStampId = std::int64_t{1} << 44, kClockId = std::int64_t{1} << 45;
+/// Distance from the others' instants, in instants, at which SampleMerger leaves samples out.
+constexpr double kOffGrid = 0.3;
 constexpr double kFew = 3, kMost_ratio = 0.01;  ///< samples beyond both are another rate
 
 double seconds_between(std::int64_t from_us, std::int64_t to_us) {
@@ -112,7 +114,9 @@ std::optional<event_t> StampEvents::of_clock(std::size_t axis, double median_us,
   Channel& c = channels_[axis];
   if (c.came == 0) return std::nullopt;
   const double offset_s = 1e-6 * (static_cast<double>(c.newest_us) - median_us) - axes_[axis].delay;
-  const bool apart = std::abs(offset_s) > lateness_s_;
+  const double steps = offset_s * rate_hz_;
+  const bool late = std::abs(offset_s) > lateness_s_;
+  const bool apart = late || std::abs(steps - std::round(steps)) > kOffGrid;
   c.seconds = apart != c.apart ? c.seconds + 1 : 0;
   if (c.seconds < kApart_s) return std::nullopt;
   c.seconds = 0;
@@ -123,10 +127,15 @@ std::optional<event_t> StampEvents::of_clock(std::size_t axis, double median_us,
                           time_us);
   m.value = offset_s;
   m.unit = "s";
-  m.message = apart ? fmt::format(
-                          "the clock of {} is {} {} the others, so their samples do not come "
-                          "together. Check the node's clock",
-                          m.place, length(offset_s), offset_s > 0 ? "ahead of" : "behind")
+  m.message = late ? fmt::format(
+                         "the clock of {} is {} {} the others, so their samples do not come "
+                         "together. Check the node's clock",
+                         m.place, length(offset_s), offset_s > 0 ? "ahead of" : "behind")
+              : apart
+                  ? fmt::format(
+                        "{} samples between the instants of the others, so its samples are left "
+                        "out. Check the node's clock",
+                        m.place)
                     : fmt::format("the clock of {} agrees with the others again", m.place);
   return m;
 }

@@ -16,8 +16,8 @@ namespace {
 
 /// Kinds of events whose place is a channel with wrong or missing samples.
 constexpr std::array kOfChannels = {"channel_silent", "channel_stuck",  "channel_rate",
-                                    "channel_clock",  "absurd_samples", "two_senders",
-                                    "losses",         "channel_table"};
+                                    "channel_clock",  "channel_doubted", "absurd_samples",
+                                    "two_senders", "losses",         "channel_table"};
 
 bool is_channel(const Config& config, const std::string& place) {
   const auto& axes = config.pipeline.axes;
@@ -76,6 +76,11 @@ void describe_channel(Finding& f, const std::string& kind) {
   else if (kind == "channel_rate" || kind == "channel_clock")
     f.advice = fmt::format("Check the {} of the node that sends {}.",
                            kind == "channel_rate" ? "rate" : "clock", f.place);
+  else if (kind == "channel_doubted")
+    f.advice = fmt::format(
+        "Check sensor {}: its mounting, scale, wiring and clock. The building itself moves as "
+        "before.",
+        f.place);
   else if (kind == "absurd_samples")
     f.advice = fmt::format("Check sensor {}: its values are impossible.", f.place);
   else if (kind == "two_senders" || kind == "channel_table")

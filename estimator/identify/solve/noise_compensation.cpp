@@ -56,6 +56,9 @@ ModelMisfit::ModelMisfit(const FloorLayout& layout)
     : layout_(layout),
       excess_(static_cast<std::size_t>(layout.floors()), 0),
       force_(static_cast<std::size_t>(layout.floors()), 0),
+      usual_(excess_.size(), 0),
+      least_(excess_.size(), 0),
+      learned_(excess_.size(), 0),
       x_(static_cast<std::size_t>(layout.most_front()), 0),
       stiff_(static_cast<std::size_t>(layout.most_front()), 0) {}
 
@@ -90,7 +93,18 @@ void ModelMisfit::update(const WindowParts& sums, const std::vector<double>& sol
     const auto f = static_cast<std::size_t>(floor);
     excess_[f] = std::isfinite(left) ? std::max(left - expected, 0.0) : 0;
     force_[f] = std::isfinite(force) ? std::max(force, 0.0) : 0;
+    learn(f, noise_known ? expected : left);
   }
+}
+
+/// Learns from windows that are not far beyond what is usual. `expected`: energy that noise leaves.
+void ModelMisfit::learn(std::size_t floor, double expected) {
+  if (!(force_[floor] > 0)) return;
+  least_[floor] = std::max(expected, 0.0) / force_[floor];
+  const double ratio = excess_[floor] / force_[floor];
+  if (learned_[floor] == kLearned && ratio > kJump * (usual_[floor] + least_[floor])) return;
+  learned_[floor] = std::min(learned_[floor] + 1, kLearned);
+  usual_[floor] += (ratio - usual_[floor]) / learned_[floor];
 }
 
 /// Returns the lowest floor whose equations hold the unknown. The first unknowns of a story are
@@ -115,6 +129,20 @@ double ModelMisfit::error(int unknown, double variance) const {
   double excess = 0;
   for (int f = lowest_floor(unknown); f <= unknown / layout_.own(); ++f)
     excess += excess_[static_cast<std::size_t>(f)];
+  return error_of(excess, variance);
+}
+
+double ModelMisfit::new_error(int unknown, double variance) const {
+  double excess = 0;
+  for (int f = lowest_floor(unknown); f <= unknown / layout_.own(); ++f) {
+    const auto floor = static_cast<std::size_t>(f);
+    const double usual = kJump * (usual_[floor] + least_[floor]) * force_[floor];
+    if (learned_[floor] == kLearned && excess_[floor] > usual) excess += excess_[floor];
+  }
+  return error_of(excess, variance);
+}
+
+double ModelMisfit::error_of(double excess, double variance) const {
   return (layout_.grouped() ? kAbsorbedOfGroups : kAbsorbed) *
          std::sqrt(excess * std::max(variance, 0.0));
 }

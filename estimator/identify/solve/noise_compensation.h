@@ -89,8 +89,9 @@ class ModelMisfit {
  public:
   explicit ModelMisfit(const FloorLayout& layout);
 
-  /// Updates to a window. solution: internal order. noise_known: the noise has the level that the
-  /// tuning assumes; otherwise the whole residual counts as model error.
+  /// Updates to a window, and learns how much a window usually leaves. solution: internal order.
+  /// noise_known: the noise has the level that the tuning assumes; otherwise the whole residual
+  /// counts as model error.
   void update(const WindowParts& sums, const std::vector<double>& solution,
               const NoiseCompensation& noise, bool noise_known);
 
@@ -100,14 +101,33 @@ class ModelMisfit {
   /// Returns the relative error of the unknown that the misfit may cause, one standard deviation.
   /// variance: the unknown's entry in the inverse of the normal matrix.
   double error(int unknown, double variance) const;
+  /// Returns the part of that error which is new: from what is left beyond kJump times the usual.
+  /// The model of a building is as wrong as ever in every window, so that a change is seen beside
+  /// it. A failing sensor or a change within the window leaves more.
+  double new_error(int unknown, double variance) const;
 
-  void archive(auto& a) { a.finite(excess_, force_); }
+  void archive(auto& a) {
+    a.finite(excess_, force_);
+    if (a.since(18)) {
+      a.finite(usual_, least_);
+      a.each_within(learned_, 0, kLearned);
+    }
+  }
 
  private:
+  /// Ratio of energies: twice the usual amplitude.
+  static constexpr double kJump = 4;
+  /// Windows in the mean of what is usual: a minute of blocks.
+  static constexpr int kLearned = 240;
   int lowest_floor(int unknown) const;
+  void learn(std::size_t floor, double expected);
+  double error_of(double excess, double variance) const;
 
   FloorLayout layout_;
   std::vector<double> excess_, force_;  ///< by floor, energies in the units of the rows
+  std::vector<double> usual_;           ///< by floor: mean of excess over force
+  std::vector<double> least_;           ///< by floor: share of the force that noise may leave
+  std::vector<int> learned_;            ///< by floor: windows in the mean
   std::vector<double> x_, stiff_;
 };
 

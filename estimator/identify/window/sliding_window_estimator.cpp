@@ -131,12 +131,16 @@ void SlidingWindowEstimator::restart() {
   since_hop_ = 0;
 }
 
-void SlidingWindowEstimator::recover() {
-  noise_.reset();
+void SlidingWindowEstimator::forget_motion() {
   if (long_) long_->retuned();
   if (bending_) bending_->restart();
   ++interruptions_;
   restart();
+}
+
+void SlidingWindowEstimator::recover() {
+  noise_.reset();
+  forget_motion();
 }
 
 const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {

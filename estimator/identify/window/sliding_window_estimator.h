@@ -40,6 +40,8 @@ class SlidingWindowEstimator {
   /// for each, then push(). Returns 0 if none is missing, and also if push() must start anew,
   /// because too many are missing or the clock has gone back.
   int missing_before(const SampleSet& set) const;
+  /// Begins all windows anew, because samples that they hold were wrong.
+  void forget_motion();
   /// Takes an instant without any sample. Earlier rows stay in the windows. No window ends there.
   void push_missing();
   /// Returns the estimate of another window that the last push completed, or nullptr.

@@ -122,7 +122,9 @@ bool WindowSolution::advance_errors(int steps) {
   errors_known_ = true;
   checked_ = influential_.solution();
   for (std::size_t u = 0; u < std_error_.size(); ++u)
-    std_error_[u] = influential_.error(static_cast<int>(u), errors_.std_error()[u]);
+    std_error_[u] =
+        std::hypot(influential_.error(static_cast<int>(u), errors_.std_error()[u]),
+                   misfit_.new_error(static_cast<int>(u), errors_.inverse_diagonal()[u]));
   for (std::size_t u = 0; u < misfit_error_.size(); ++u)
     misfit_error_[u] = misfit_.error(static_cast<int>(u), errors_.inverse_diagonal()[u]);
   return true;

@@ -25,16 +25,16 @@ constexpr double kWrong = 0.03, kErrors = 5;
 using Spike = std::function<void(Eigen::MatrixXd& accel, int at)>;
 
 /// Returns the share of the published frame stiffnesses that are wrong and certain.
-double wrong_and_certain(const std::vector<Spike>& spikes) {
+double wrong_and_certain(const std::vector<Spike>& spikes, int first = kFirst) {
   const Structure building = test::table1();
   const Eigen::VectorXd truth = test::table1_theta();
   PipelineConfig config = test::pipeline_config(building, kRate_hz);
   config.options.hop_s = 0.05;
   const double seconds =
-      (kFirst + kApart * static_cast<double>(std::max<std::size_t>(spikes.size(), 4))) / kRate_hz;
+      (first + kApart * static_cast<double>(std::max<std::size_t>(spikes.size(), 4))) / kRate_hz;
   Eigen::MatrixXd accel = test::shaken(building, truth, kRate_hz, seconds, 0.001);
   for (std::size_t i = 0; i < spikes.size(); ++i)
-    spikes[i](accel, kFirst + kApart * static_cast<int>(i));
+    spikes[i](accel, first + kApart * static_cast<int>(i));
   const ParameterTable table(building);
   double wrong = 0, shown = 0;
   for (const WindowEstimate& e : test::run_pipeline(config, accel).estimates)
@@ -66,6 +66,38 @@ TEST(HonestErrors, CoverSpikesThatAGuardLetsPass) {
     for (int t = 0; t < 7; ++t) accel(at + t, 3) += std::ldexp(2.0, t);
   });
   EXPECT_LE(wrong_and_certain(spikes), kRare);
+}
+
+TEST(HonestErrors, CoverAChannelThatFails) {
+  constexpr int kLearned = 9000;  // instant
+  constexpr int kAxis = 4, kOther = 5;
+  const std::vector<Spike> faults{
+      [](Eigen::MatrixXd& accel, int at) {  // only noise
+        const auto rows = accel.rows() - at;
+        accel.col(kAxis).tail(rows) = 1e-3 * Eigen::VectorXd::Random(rows);
+      },
+      [](Eigen::MatrixXd& accel, int at) {  // another gain
+        accel.col(kAxis).tail(accel.rows() - at) *= 1.1;
+      },
+      [](Eigen::MatrixXd& accel, int at) {  // saturated
+        auto from = accel.col(kAxis).tail(accel.rows() - at);
+        const double full = 0.5 * from.cwiseAbs().maxCoeff();
+        from = full * (from / full).array().tanh().matrix();
+      },
+      [](Eigen::MatrixXd& accel, int at) {  // late by a sample
+        const auto rows = accel.rows() - at;
+        accel.col(kAxis).tail(rows) = accel.col(kAxis).segment(at - 1, rows).eval();
+      },
+      [](Eigen::MatrixXd& accel, int at) {  // exchanged
+        const auto rows = accel.rows() - at;
+        accel.col(kAxis).tail(rows).swap(accel.col(kOther).tail(rows));
+      },
+      [](Eigen::MatrixXd& accel, int at) {  // repeats another
+        const auto rows = accel.rows() - at;
+        accel.col(kAxis).tail(rows) = accel.col(kOther).tail(rows);
+      }};
+  for (std::size_t i = 0; i < faults.size(); ++i)
+    EXPECT_LE(wrong_and_certain({faults[i]}, kLearned), kRare) << i;
 }
 
 TEST(HonestErrors, StaySmallWithoutSpikes) {

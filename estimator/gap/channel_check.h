@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/gap/channel_law.h"
+#include "estimator/motion/sample.h"
+#include "estimator/structure/sensors.h"
+#include "estimator/structure/structure.h"
+#include "estimator/watch/change_record.h"
+
+namespace framewatch::estimator {
+
+/// The beginning, another law, or the end of a doubt about a channel.
+struct ChannelNews {
+  int axis = -1;
+  AlarmState state = AlarmState::raised;
+  Time found, since;  ///< end and start of windows
+  ChannelLaw law;
+  double departure = 0;  ///< rms of what the reading has beyond the motion, over the motion's rms
+  double others = 0;     ///< the largest departure of the channels that are not in doubt
+};
+
+/// Tells a channel that misreads from a building that changed. The running model knows how every
+/// channel of a healthy building should move. A change of the building moves all floors of a
+/// direction differently; a faulty channel departs alone. A faulty channel of the base moves the
+/// whole model, but by a law that no change of a building has. docs/equations.md, faults of
+/// channels.
+class ChannelCheck {
+ public:
+  ChannelCheck(const Structure& structure, const std::vector<SensorAxis>& axes, double rate_hz);
+
+  /// Forgets the window, after an interruption.
+  void restart() { filled_ = 0; }
+  /// Forgets everything, because the model is another one.
+  void forget();
+  /// Takes one instant. read: by axis, m/s^2, filtered; expected: by axis, NaN for the base.
+  /// noise_variance: by axis, of what is compared; NaN or 0 if unknown. Returns the news of this
+  /// instant; there are none but once a second. Valid until the next call.
+  const std::vector<ChannelNews>& push(Time time, const std::vector<double>& read,
+                                       const std::vector<double>& expected,
+                                       const std::vector<double>& noise_variance);
+  /// Returns true while a channel seems to misread and is not in doubt yet.
+  bool suspects() const {
+    return std::any_of(doubts_.begin(), doubts_.end(),
+                       [](const Doubt& doubt) { return !doubt.raised && doubt.seconds > 0; });
+  }
+  /// Returns by axis: 1 if the channel is in doubt.
+  const std::vector<std::uint8_t>& doubted() const { return doubted_; }
+
+  void archive(auto& a) {
+    a(read_, expected_, usual_, doubts_, time_);
+    a.within(newest_, 0, static_cast<double>(read_.rows() - 1));
+    a.within(filled_, 0, static_cast<double>(read_.rows()));
+    a.within(second_, 0, a.kMaxCount);
+    a.each_within(doubted_, 0, 1);
+  }
+
+ private:
+  /// What a healthy channel leaves, learned window by window.
+  struct Usual {
+    Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();  ///< of motion, its slope and the reading
+    double spread = 0;       ///< sum of squares of ln(left / usual) of windows
+    double input_share = 0;  ///< base only: least energy of the reading over that of the floors
+    int windows = 0;
+
+    void archive(auto& a) {
+      a.finite(sums, spread, input_share);
+      a.within(windows, 0, a.kMaxCount);
+    }
+  };
+  struct Doubt {
+    bool raised = false;
+    int seconds = 0;  ///< for which windows contradict `raised`
+    int age = 0;      ///< seconds since it was raised, while that matters
+    ChannelLaw law;
+    Time since{};
+    double motion = 0;  ///< least energy of the motion that shows whether the fault is over
+
+    void archive(auto& a) {
+      a(raised, law, since);
+      for (int* count : {&seconds, &age}) a.within(*count, 0, a.kMaxCount);
+      a.finite(motion);
+    }
+  };
+  /// One axis in the present window.
+  struct Seen {
+    bool judged = false;    ///< it should move enough to be judged
+    double usual = 0;       ///< energy that a healthy channel leaves
+    double left = 0;        ///< energy that it leaves
+    double motion = 0;      ///< energy of its expected motion
+    double departure = 0;   ///< ln(left / usual)
+    bool departs = false;
+  };
+
+  void unroll();
+  void correct(std::size_t axis);
+  Seen look_at(std::size_t axis, double noise_variance) const;
+  ChannelReadings since_onset(const std::vector<int>& axes) const;
+  void learn();
+  std::vector<std::pair<int, ChannelLaw>> find_suspects() const;
+  std::vector<std::pair<int, ChannelLaw>> suspects_of_base(Direction along) const;
+  double least_motion(std::size_t axis, const ChannelLaw& law) const;
+  void decide(const std::vector<std::pair<int, ChannelLaw>>& suspects);
+
+  std::vector<SensorAxis> axes_;
+  std::vector<Direction> along_;
+  double rate_hz_;
+  int per_second_;
+  Eigen::MatrixXd read_, expected_;  ///< ring of instants x axes
+  int newest_ = 0, filled_ = 0;
+  int second_ = 0;  ///< instants since the start
+  Time time_{};
+  std::vector<Usual> usual_;
+  std::vector<Doubt> doubts_;
+  std::vector<std::uint8_t> doubted_;
+  std::vector<ChannelNews> news_;
+
+  // Of the present window.
+  Eigen::MatrixXd window_read_, window_expected_;  ///< in order; expected with the usual law
+  std::vector<Seen> seen_;
+  std::vector<double> noise_;
+};
+
+}  // namespace framewatch::estimator
