@@ -26,6 +26,8 @@ constexpr int kLeast_s = 2;    ///< of readings that show a law
 constexpr int kClear_s = 30;   ///< consecutive seconds until it is cleared
 /// A base channel that shows this share of the least energy that it ever had beside the floors'.
 constexpr double kDead = 0.04;
+/// Channels that may fail together. More would take too long to look at, and are rather a change.
+constexpr std::size_t kMostAtOnce = 4;
 
 /// Returns the factors of motion and slope that fit the reading best, from sums of the products of
 /// motion, slope and reading.
@@ -52,6 +54,8 @@ ChannelCheck::ChannelCheck(const Structure& structure, const std::vector<SensorA
   const auto columns = static_cast<Eigen::Index>(axes.size());
   read_.setConstant(kWindow_s * per_second_, columns, kNaN);
   expected_ = window_read_ = window_expected_ = read_;
+  for (const SensorAxis& axis : axes)
+    from_input_.push_back(axis.story == 0 && axis.horizontal() ? read_ : Eigen::MatrixXd());
   news_.reserve(axes.size());
 }
 
@@ -61,21 +65,28 @@ void ChannelCheck::forget() {
   for (Doubt& doubt : doubts_) doubt.seconds = 0;
 }
 
-const std::vector<ChannelNews>& ChannelCheck::push(Time time, const std::vector<double>& read,
-                                                   const std::vector<double>& expected,
+const std::vector<ChannelNews>& ChannelCheck::push(Time time, const ChannelInstant& instant,
                                                    const std::vector<double>& noise_variance) {
   news_.clear();
   for (Eigen::Index a = 0; a < read_.cols(); ++a) {
-    read_(newest_, a) = read[static_cast<std::size_t>(a)];
-    expected_(newest_, a) = expected[static_cast<std::size_t>(a)];
+    read_(newest_, a) = instant.read[static_cast<std::size_t>(a)];
+    expected_(newest_, a) = instant.expected[static_cast<std::size_t>(a)];
   }
+  for (Eigen::MatrixXd& part : from_input_)
+    if (part.size() > 0) part.row(newest_).setConstant(kNaN);
+  for (Eigen::Index i = 0; i < instant.from_input.rows(); ++i)
+    if (Eigen::MatrixXd& part = from_input_[static_cast<std::size_t>(
+            instant.inputs[static_cast<std::size_t>(i)])];
+        part.size() > 0)
+      part.row(newest_) = instant.from_input.row(i);
   const int rows = static_cast<int>(read_.rows());
   newest_ = (newest_ + 1) % rows;
   filled_ = std::min(filled_ + 1, rows);
   second_ = (second_ + 1) % rows;
   if (filled_ < rows || second_ % per_second_ != 0) return news_;
   time_ = time;
-  unroll();
+  window_read_ = in_order(read_);
+  window_expected_ = in_order(expected_);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     noise_[a] = std::isfinite(noise_variance[a]) ? rows * noise_variance[a] : 0;
     correct(a);
@@ -88,13 +99,12 @@ const std::vector<ChannelNews>& ChannelCheck::push(Time time, const std::vector<
   return news_;
 }
 
-/// Brings the ring into the order of time.
-void ChannelCheck::unroll() {
-  const Eigen::Index old = read_.rows() - newest_;
-  window_read_.topRows(old) = read_.bottomRows(old);
-  window_read_.bottomRows(newest_) = read_.topRows(newest_);
-  window_expected_.topRows(old) = expected_.bottomRows(old);
-  window_expected_.bottomRows(newest_) = expected_.topRows(newest_);
+/// Returns a ring of instants in the order of time.
+Eigen::MatrixXd ChannelCheck::in_order(const Eigen::MatrixXd& ring) const {
+  Eigen::MatrixXd out(ring.rows(), ring.cols());
+  out.topRows(ring.rows() - newest_) = ring.bottomRows(ring.rows() - newest_);
+  out.bottomRows(newest_) = ring.topRows(newest_);
+  return out;
 }
 
 /// Gives the expected motion the gain and the delay that the channel usually has beside the model.
@@ -169,8 +179,8 @@ void ChannelCheck::learn() {
   }
 }
 
-/// Returns the end of the window, in which the axes depart second by second.
-ChannelReadings ChannelCheck::since_onset(const std::vector<int>& axes) const {
+/// Returns the length of the end of the window in which the axes depart second by second.
+Eigen::Index ChannelCheck::rows_since_onset(const std::vector<int>& axes) const {
   int seconds = 0;
   const auto departs = [&](int second) {
     return std::any_of(axes.begin(), axes.end(), [&](int axis) {
@@ -184,72 +194,98 @@ ChannelReadings ChannelCheck::since_onset(const std::vector<int>& axes) const {
     });
   };
   while (seconds < kWindow_s && departs(kWindow_s - 1 - seconds)) ++seconds;
-  const Eigen::Index rows = std::max(seconds, kLeast_s) * per_second_;
-  return {window_read_.bottomRows(rows), window_expected_.bottomRows(rows), rate_hz_};
+  return Eigen::Index{std::max(seconds, kLeast_s)} * per_second_;
 }
 
-std::vector<std::pair<int, ChannelLaw>> ChannelCheck::suspects_of_base(Direction along) const {
-  std::vector<int> floors, base;
+/// Returns the rms of what the axes leave beyond the usual, over that of their motion.
+double ChannelCheck::departure(const std::vector<int>& axes) const {
+  double beyond = 0, motion = 0;
+  for (const int axis : axes) {
+    const Seen& seen = seen_[static_cast<std::size_t>(axis)];
+    beyond += std::max(seen.left - seen.usual, 0.0);
+    motion += seen.motion;
+  }
+  return motion > 0 ? std::sqrt(beyond / motion) : 0;
+}
+
+/// Returns base channels that do not move although the floors do, or that repeat another channel.
+std::vector<ChannelCheck::Suspect> ChannelCheck::lost_inputs(const std::vector<int>& floors) const {
+  std::vector<Suspect> out;
   double motion = 0;
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (along_[a] != along || !axes_[a].horizontal()) continue;
-    if (axes_[a].story == 0) {
-      if (window_read_.col(static_cast<Eigen::Index>(a)).allFinite())
-        base.push_back(static_cast<int>(a));
-      continue;
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    if (const auto column = window_read_.col(static_cast<Eigen::Index>(a));
+        axes_[a].story > 0 && axes_[a].horizontal() && column.allFinite())
+      motion += column.squaredNorm();
+  for (std::size_t b = 0; b < axes_.size(); ++b) {
+    const auto column = window_read_.col(static_cast<Eigen::Index>(b));
+    if (axes_[b].story != 0 || !axes_[b].horizontal() || !column.allFinite()) continue;
+    const double energy = column.squaredNorm();
+    const auto axis = static_cast<int>(b);
+    if (usual_[b].windows >= kLearned && energy < kDead * usual_[b].input_share * motion)
+      out.push_back({axis, {ChannelFault::only_noise, 0, -1, energy}, departure(floors)});
+    for (const int other : floors) {
+      const double left = (column - window_read_.col(other)).squaredNorm();
+      if (left < kMatters * kMatters * energy)
+        out.push_back({axis, {ChannelFault::repeats, 0, other, left}, departure(floors)});
     }
-    if (seen_[a].judged) floors.push_back(static_cast<int>(a));
-    motion += window_read_.col(static_cast<Eigen::Index>(a)).squaredNorm();
   }
-  std::vector<std::pair<int, ChannelLaw>> out;
-  for (const int b : base) {
-    const auto at = static_cast<std::size_t>(b);
-    const double energy = window_read_.col(b).squaredNorm();
-    if (usual_[at].windows >= kLearned && energy < kDead * usual_[at].input_share * motion)
-      out.emplace_back(b, ChannelLaw{ChannelFault::only_noise, 0, -1, energy});
-    for (Eigen::Index other = 0; other < window_read_.cols(); ++other)
-      if (other != b && window_read_.col(other).allFinite() &&
-          (window_read_.col(b) - window_read_.col(other)).squaredNorm() < kMatters * kMatters * energy)
-        out.emplace_back(b, ChannelLaw{ChannelFault::repeats, 0, static_cast<int>(other), 0});
-  }
-  if (!out.empty() || floors.empty()) return out;
-  const ChannelLaw law = law_of_input(since_onset(floors), floors);
-  if (law.fault == ChannelFault::unlike) return out;
-  for (const int b : base) out.emplace_back(b, law);
   return out;
 }
 
-std::vector<std::pair<int, ChannelLaw>> ChannelCheck::find_suspects() const {
-  std::vector<std::pair<int, ChannelLaw>> out;
-  for (const Direction along : {Direction::x, Direction::y}) {
-    double most = 0;
-    int judged = 0;
-    bool departs = false;
-    for (std::size_t a = 0; a < axes_.size(); ++a) {
-      if (along_[a] != along || !seen_[a].judged) continue;
-      ++judged;
-      departs = departs || seen_[a].departs;
-      most = std::max(most, seen_[a].departure);
-    }
-    std::vector<int> apart;
-    for (std::size_t a = 0; a < axes_.size(); ++a)
-      if (along_[a] == along && seen_[a].judged && seen_[a].departure > kAlike * most)
-        apart.push_back(static_cast<int>(a));
-    // Without a judged floor, the base may have lost its motion.
-    if (judged == 0 || (departs && 2 * apart.size() > static_cast<std::size_t>(judged))) {
-      const auto base = suspects_of_base(along);
-      out.insert(out.end(), base.begin(), base.end());
-      continue;
-    }
-    if (!departs) continue;
-    for (const int a : apart) {
-      const ChannelLaw law = law_of(since_onset({a}), a);
-      const bool alone = std::all_of(apart.begin(), apart.end(), [&](int other) {
-        const std::string& group = axes_[static_cast<std::size_t>(a)].group;
-        return other == a || (!group.empty() && group == axes_[static_cast<std::size_t>(other)].group);
-      });
-      if (alone || law.fault != ChannelFault::unlike) out.emplace_back(a, law);
-    }
+/// Returns the base channel whose fault explains how the floors depart, if there is one.
+std::vector<ChannelCheck::Suspect> ChannelCheck::faulty_input(
+    const std::vector<int>& floors) const {
+  const Eigen::Index rows = rows_since_onset(floors);
+  const Eigen::MatrixXd read = window_read_.bottomRows(rows)(Eigen::all, floors);
+  const Eigen::MatrixXd expected = window_expected_.bottomRows(rows)(Eigen::all, floors);
+  std::vector<Suspect> out;
+  double least = kExplained * (read - expected).squaredNorm();
+  for (std::size_t b = 0; b < axes_.size(); ++b) {
+    if (from_input_[b].size() == 0) continue;
+    const Eigen::MatrixXd part = in_order(from_input_[b]).bottomRows(rows)(Eigen::all, floors);
+    if (!part.allFinite()) continue;
+    const ChannelLaw law = law_of_input({read - expected + part, part, rate_hz_});
+    if (law.fault == ChannelFault::unlike || !(law.left < least)) continue;
+    least = law.left;
+    out = {{static_cast<int>(b), law, departure(floors)}};
+  }
+  return out;
+}
+
+std::vector<ChannelCheck::Suspect> ChannelCheck::find_suspects() const {
+  double most = 0;
+  std::vector<int> judged, apart;
+  bool departs = false;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    if (!seen_[a].judged) continue;
+    judged.push_back(static_cast<int>(a));
+    departs = departs || seen_[a].departs;
+    most = std::max(most, seen_[a].departure);
+  }
+  if (const std::vector<Suspect> lost = lost_inputs(judged); !lost.empty()) return lost;
+  if (!departs) return {};
+  for (const int a : judged)
+    if (seen_[static_cast<std::size_t>(a)].departure > kAlike * most) apart.push_back(a);
+  const std::string& group = axes_[static_cast<std::size_t>(apart.front())].group;
+  const bool alone =
+      2 * apart.size() <= judged.size() &&
+      (apart.size() == 1 || std::all_of(apart.begin(), apart.end(), [&](int a) {
+         return !group.empty() && axes_[static_cast<std::size_t>(a)].group == group;
+       }));
+  if (!alone)
+    if (const std::vector<Suspect> base = faulty_input(judged); !base.empty()) return base;
+  if (apart.size() > kMostAtOnce) return {};
+  std::vector<Suspect> out;
+  for (const int a : apart) {
+    const Eigen::Index rows = rows_since_onset({a});
+    const Eigen::MatrixXd read = window_read_.bottomRows(rows);
+    const Eigen::MatrixXd expected = window_expected_.bottomRows(rows);
+    const double before = (read.col(a) - expected.col(a)).squaredNorm();
+    const ChannelLaw law = law_of({read, expected, rate_hz_}, a);
+    // A law for each of several channels must explain more than a change of the building could.
+    const double share = std::exp(-kAlike * seen_[static_cast<std::size_t>(a)].departure);
+    if (!alone && !(law.fault != ChannelFault::unlike && law.left < share * before)) return {};
+    out.push_back({a, law, departure({a})});
   }
   return out;
 }
@@ -260,25 +296,25 @@ double ChannelCheck::least_motion(std::size_t axis, const ChannelLaw& law) const
   return std::max(share * seen_[axis].motion, kAbove * noise_[axis]);
 }
 
-void ChannelCheck::decide(const std::vector<std::pair<int, ChannelLaw>>& suspects) {
-  double others = 0;
-  const auto rms = [&](std::size_t a) {
-    return std::sqrt(std::max(seen_[a].left - seen_[a].usual, 0.0) / seen_[a].motion);
-  };
-  const auto law_for = [&](std::size_t a) -> const ChannelLaw* {
-    for (const auto& [axis, law] : suspects)
-      if (axis == static_cast<int>(a)) return &law;
+void ChannelCheck::decide(const std::vector<Suspect>& suspects) {
+  const auto suspect = [&](std::size_t a) -> const Suspect* {
+    for (const Suspect& s : suspects)
+      if (s.axis == static_cast<int>(a)) return &s;
     return nullptr;
   };
+  double others = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (seen_[a].judged && law_for(a) == nullptr) others = std::max(others, rms(a));
+    if (seen_[a].judged && suspect(a) == nullptr && doubted_[a] == 0)
+      others = std::max(others, departure({static_cast<int>(a)}));
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     Doubt& doubt = doubts_[a];
-    const ChannelLaw* law = law_for(a);
+    const Suspect* const suspected = suspect(a);
+    const ChannelLaw* law = suspected == nullptr ? nullptr : &suspected->law;
     const bool known = axes_[a].story == 0 || seen_[a].motion >= doubt.motion;
     const bool against = doubt.raised ? known && law == nullptr && !seen_[a].departs : law != nullptr;
     doubt.seconds = against ? doubt.seconds + 1 : 0;
-    ChannelNews news{static_cast<int>(a), AlarmState::changed, time_, doubt.since, {}, rms(a), others};
+    ChannelNews news{static_cast<int>(a), AlarmState::changed, time_, doubt.since, {}, 0, others};
+    if (suspected != nullptr) news.departure = suspected->departure;
     if (doubt.raised) doubt.age = std::min(doubt.age + 1, kWindow_s + 1);
     const bool whole = doubt.age == kWindow_s;  // the fault now fills the window
     const bool named = doubt.law.fault == ChannelFault::unlike && law != nullptr &&

@@ -26,6 +26,16 @@ struct ChannelNews {
   double others = 0;     ///< the largest departure of the channels that are not in doubt
 };
 
+/// One instant of what the channels read and should read, m/s^2, filtered; references.
+struct ChannelInstant {
+  const std::vector<double>& read;      ///< by axis
+  const std::vector<double>& expected;  ///< by axis; NaN for the base
+  /// The part of `expected` that each axis in `inputs` causes: inputs x axes; without rows if the
+  /// model is not linear.
+  const Eigen::MatrixXd& from_input;
+  const std::vector<Eigen::Index>& inputs;  ///< axes that drive the model
+};
+
 /// Tells a channel that misreads from a building that changed. The running model knows how every
 /// channel of a healthy building should move. A change of the building moves all floors of a
 /// direction differently; a faulty channel departs alone. A faulty channel of the base moves the
@@ -39,11 +49,9 @@ class ChannelCheck {
   void restart() { filled_ = 0; }
   /// Forgets everything, because the model is another one.
   void forget();
-  /// Takes one instant. read: by axis, m/s^2, filtered; expected: by axis, NaN for the base.
-  /// noise_variance: by axis, of what is compared; NaN or 0 if unknown. Returns the news of this
-  /// instant; there are none but once a second. Valid until the next call.
-  const std::vector<ChannelNews>& push(Time time, const std::vector<double>& read,
-                                       const std::vector<double>& expected,
+  /// Takes one instant. noise_variance: by axis, of what is compared; NaN or 0 if unknown. Returns
+  /// the news of this instant; there are none but once a second. Valid until the next call.
+  const std::vector<ChannelNews>& push(Time time, const ChannelInstant& instant,
                                        const std::vector<double>& noise_variance);
   /// Returns true while a channel seems to misread and is not in doubt yet.
   bool suspects() const {
@@ -54,7 +62,7 @@ class ChannelCheck {
   const std::vector<std::uint8_t>& doubted() const { return doubted_; }
 
   void archive(auto& a) {
-    a(read_, expected_, usual_, doubts_, time_);
+    a(read_, expected_, from_input_, usual_, doubts_, time_);
     a.within(newest_, 0, static_cast<double>(read_.rows() - 1));
     a.within(filled_, 0, static_cast<double>(read_.rows()));
     a.within(second_, 0, a.kMaxCount);
@@ -98,21 +106,32 @@ class ChannelCheck {
     bool departs = false;
   };
 
-  void unroll();
+  /// A channel that seems to misread in the present window.
+  struct Suspect {
+    int axis;
+    ChannelLaw law;
+    double departure;  ///< ChannelNews::departure
+  };
+
+  Eigen::MatrixXd in_order(const Eigen::MatrixXd& ring) const;
   void correct(std::size_t axis);
   Seen look_at(std::size_t axis, double noise_variance) const;
-  ChannelReadings since_onset(const std::vector<int>& axes) const;
+  Eigen::Index rows_since_onset(const std::vector<int>& axes) const;
   void learn();
-  std::vector<std::pair<int, ChannelLaw>> find_suspects() const;
-  std::vector<std::pair<int, ChannelLaw>> suspects_of_base(Direction along) const;
+  std::vector<Suspect> find_suspects() const;
+  std::vector<Suspect> lost_inputs(const std::vector<int>& floors) const;
+  std::vector<Suspect> faulty_input(const std::vector<int>& floors) const;
+  double departure(const std::vector<int>& axes) const;
   double least_motion(std::size_t axis, const ChannelLaw& law) const;
-  void decide(const std::vector<std::pair<int, ChannelLaw>>& suspects);
+  void decide(const std::vector<Suspect>& suspects);
 
   std::vector<SensorAxis> axes_;
   std::vector<Direction> along_;
   double rate_hz_;
   int per_second_;
   Eigen::MatrixXd read_, expected_;  ///< ring of instants x axes
+  /// By input axis: the part of expected_ that it causes; NaN for the others.
+  std::vector<Eigen::MatrixXd> from_input_;
   int newest_ = 0, filled_ = 0;
   int second_ = 0;  ///< instants since the start
   Time time_{};
@@ -122,7 +141,7 @@ class ChannelCheck {
   std::vector<ChannelNews> news_;
 
   // Of the present window.
-  Eigen::MatrixXd window_read_, window_expected_;  ///< in order; expected with the usual law
+  Eigen::MatrixXd window_read_, window_expected_;  ///< with the usual law
   std::vector<Seen> seen_;
   std::vector<double> noise_;
 };

@@ -11,7 +11,6 @@ namespace {
 
 using Column = Eigen::VectorXd;
 
-constexpr double kExplained = 0.25;  ///< of the energy: half of the amplitude
 constexpr double kHalved = 0.5;      ///< a law with one more number must leave at most this share
 constexpr double kLatest_s = 0.25;   ///< longest delay searched
 constexpr double kStart = 0.2;       ///< share of the window in which a low-pass forgets its start
@@ -163,6 +162,15 @@ bool is_noise(const Pairs& pairs) {
   return energy < kSmall * motion && gain_law(pairs).left > (1 - kSmall) * energy;
 }
 
+/// Returns the law if it explains the readings. It must leave little beside both sides: a law that
+/// makes one of them vanish explains nothing.
+ChannelLaw explained(const Pairs& pairs, const ChannelLaw& best, double before) {
+  const double all = pairs.sum([](const auto& r, const auto&) { return r.squaredNorm(); });
+  const double motion = pairs.sum([](const auto&, const auto& e) { return e.squaredNorm(); });
+  if (best.left <= kExplained * std::min({before, all, motion})) return best;
+  return {ChannelFault::unlike, 0, -1, before};
+}
+
 }  // namespace
 
 ChannelLaw law_of(const ChannelReadings& of, int axis) {
@@ -174,15 +182,14 @@ ChannelLaw law_of(const ChannelReadings& of, int axis) {
   add_bandwidths(pairs, of.rate_hz, false, best);
   add_others(of, axis, best);
   if (is_noise(pairs)) return {ChannelFault::only_noise, 0, -1, before};
-  if (best.left <= kExplained * before) return best;
-  return {ChannelFault::unlike, 0, -1, before};
+  return explained(pairs, best, before);
 }
 
-ChannelLaw law_of_input(const ChannelReadings& of, const std::vector<int>& axes) {
+ChannelLaw law_of_input(const ChannelReadings& of) {
   Pairs pairs;
-  for (const int axis : axes) {
-    pairs.read.push_back(of.read.col(axis));
-    pairs.expected.push_back(of.expected.col(axis));
+  for (Eigen::Index column = 0; column < of.read.cols(); ++column) {
+    pairs.read.push_back(of.read.col(column));
+    pairs.expected.push_back(of.expected.col(column));
   }
   const double before = pairs.sum(left_of);
   ChannelLaw best = gain_law(pairs);
@@ -194,8 +201,7 @@ ChannelLaw law_of_input(const ChannelReadings& of, const std::vector<int>& axes)
     best.value = -best.value;
   }
   add_bandwidths(pairs, of.rate_hz, true, best);
-  if (best.left <= kExplained * before) return best;
-  return {ChannelFault::unlike, 0, -1, before};
+  return explained(pairs, best, before);
 }
 
 }  // namespace framewatch::estimator

@@ -7,6 +7,9 @@
 
 namespace framewatch::estimator {
 
+/// A law leaves at most this share of the energy of what it explains: half of the amplitude.
+inline constexpr double kExplained = 0.25;
+
 /// How a channel misreads.
 enum class ChannelFault {
   unlike,      ///< its reading is not the building's motion, in no way named below
@@ -47,9 +50,8 @@ struct ChannelReadings {
 /// Returns the law of one axis, docs/equations.md, faults of channels. A law with a further number
 /// must halve what is left, and any law must leave at most a quarter of `read - expected`.
 ChannelLaw law_of(const ChannelReadings& readings, int axis);
-/// Returns the law of the input that `axes` are expected to follow, from the way in which all of
-/// them depart alike. The expected motion of a linear building has the faults of gain, time and
-/// bandwidth of its input.
-ChannelLaw law_of_input(const ChannelReadings& readings, const std::vector<int>& axes);
+/// Returns the law of an input of a linear model. readings: of all floors, the motion that the input
+/// causes, one column each. It has the input's faults of gain, time and bandwidth.
+ChannelLaw law_of_input(const ChannelReadings& readings);
 
 }  // namespace framewatch::estimator

@@ -76,6 +76,7 @@ class GapMonitor {
     AxisCorrection correction;
     DriftControlledIntegrator filter;
     RunningModel running;
+    std::vector<RunningModel> parts;  ///< driven by one of inputs_.used alone, all but the last one
     NoisePath noise;
     GapMeter meter;
     SensorClock::duration delay;  ///< of the compared instant
@@ -86,6 +87,7 @@ class GapMonitor {
 
     void archive(auto& a) {
       a(correction, filter, running, noise, meter, held);
+      if (a.since(18)) a(parts);
       a.within(newest, 0, RunningModel::kDelay);  // of kDelay + 1 instants
       a.finite(settled_s);
       a.within(expected_index, -1, a.kMaxCount);
@@ -97,6 +99,7 @@ class GapMonitor {
   /// Recomputes the inputs from the present axes and restarts the running model.
   void take_inputs();
   void hold(Current& c);
+  void drive(Current& c, const std::vector<double>& accel);
   void compare(Current& c);
   bool base_doubted() const;
   void noise_variances(const Current& c, const std::vector<double>& noise_density);
@@ -129,6 +132,7 @@ class GapMonitor {
   ChannelCheck check_;
   std::vector<ChannelNews> channel_news_;
   std::vector<double> read_, expected_;  ///< by axis: what check_ compares now
+  Eigen::MatrixXd from_input_;           ///< the part of expected_ from each of inputs_.used
   Eigen::VectorXd driven_;               ///< the present inputs
   std::vector<double> noise_variance_;
   const GapNews* news_ = nullptr;

@@ -192,8 +192,17 @@ void Estimation::compare_gap(const estimator::SampleSet& instant) {
   listener_->on_gap(*news);
 }
 
+/// Returns false while a channel seems to misread, and while a building in groups of stories is seen
+/// by other channels than those that its baseline was learned with.
+bool Estimation::speaks_of_building() const {
+  if (!gap_) return true;
+  const auto& doubted = gap_->doubted();
+  const bool without = std::find(doubted.begin(), doubted.end(), 1) != doubted.end();
+  return !gap_->suspects() && !(without && pipeline_.parameters().grouped());
+}
+
 void Estimation::watch(const estimator::WindowEstimate& estimate) {
-  if (!watch_ || (gap_ && gap_->suspects())) return;  // nothing is known of the building then
+  if (!watch_ || !speaks_of_building()) return;
   for (const estimator::Alarm& alarm : watch_->push(estimate))
     announce(with_recovery(stiffness_event(alarm, pipeline_.parameters()), alarm.parameter));
   follow_recovery(estimate);

@@ -164,6 +164,7 @@ class Estimation {
   void publish_state();
   drivers::IntakeResult temperature(const void* data, std::size_t size);
   void take(estimator::Pipeline::Results&& results);
+  bool speaks_of_building() const;
   void watch(const estimator::WindowEstimate& estimate);
   void follow_recovery(const estimator::WindowEstimate& estimate);
   /// Returns true if the change of this parameter began with the strong motion of its recovery law.

@@ -117,11 +117,14 @@ class ModelMisfit {
  private:
   /// Ratio of energies: twice the usual amplitude.
   static constexpr double kJump = 4;
+  /// Part of the noise's energy by which it may exceed what is expected: a quarter of its level.
+  static constexpr double kNoiseDoubt = 0.5;
   /// Windows in the mean of what is usual: a minute of blocks.
   static constexpr int kLearned = 240;
   int lowest_floor(int unknown) const;
   void learn(std::size_t floor, double expected);
-  double error_of(double excess, double variance) const;
+  /// Returns the ratio of excess to force beyond which a misfit is new.
+  double usual_limit(std::size_t floor) const;
 
   FloorLayout layout_;
   std::vector<double> excess_, force_;  ///< by floor, energies in the units of the rows
