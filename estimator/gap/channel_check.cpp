@@ -6,37 +6,41 @@
 #include <numeric>
 
 #include "estimator/numeric/nan.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr int kWindow_s = 5;
 constexpr int kLearned = 3;    ///< windows without overlap before an axis is judged: 15 s
-constexpr int kForgets = 60;   ///< windows after which older ones fade from the usual law
+constexpr int kForgets = 24;   ///< windows after which older ones fade from the usual law
 constexpr double kAbove = 25;  ///< energy of the motion over the noise that makes it judged
 /// Least departure in doubt, ln of energies: twice the usual amplitude; and in standard deviations.
 const double kDeparts = std::log(4.0);
-constexpr double kDeviations = 4;
+constexpr double kDeviations = 3;
 /// Rms beyond the motion's that matters: the gain of an accelerometer changes by less with weather.
 constexpr double kMatters = 0.01;
 /// Other channels depart as well if their departure, ln of energies, is more than this share.
 constexpr double kAlike = 0.5;
-constexpr int kConfirm_s = 3;  ///< consecutive seconds until a doubt is raised
+constexpr double kTight = 1.0 / 3;  ///< share of the departure that a law may leave, ln of energies
+/// Other channels of its direction that must move as ever for a channel that follows no law. A
+/// change of one frame of a few can be near one channel alone.
+constexpr int kWitnesses = 3;
+/// Share of the energy that a law of time of the base may leave. All floors follow it once their
+/// earlier motion has died away. A change of the building is similar, but leaves more.
+constexpr double kOfTime = 0.05;
+constexpr int kConfirm_s = 5;  ///< consecutive seconds until a doubt is raised
 constexpr int kLeast_s = 2;    ///< of readings that show a law
-constexpr int kClear_s = 30;   ///< consecutive seconds until it is cleared
+/// Seconds after which a law is told for the last time: the motion before the fault has died away.
+constexpr int kFinal_s = 30;
+constexpr int kClear_s = 30;  ///< consecutive seconds until it is cleared
 /// A base channel that shows this share of the least energy that it ever had beside the floors'.
 constexpr double kDead = 0.04;
+/// Motions of the model, of one direction, that correct what the model lacks at a channel.
+constexpr std::size_t kMostMotions = 8;
+constexpr double kRidge = 1e-6;  ///< of the diagonal: motions of few modes are nearly dependent
 /// Channels that may fail together. More would take too long to look at, and are rather a change.
 constexpr std::size_t kMostAtOnce = 4;
-
-/// Returns the factors of motion and slope that fit the reading best, from sums of the products of
-/// motion, slope and reading.
-Eigen::Vector2d fitted(const Eigen::Matrix3d& sums) {
-  const double determinant = sums(0, 0) * sums(1, 1) - sums(0, 1) * sums(0, 1);
-  return Eigen::Vector2d(sums(1, 1) * sums(0, 2) - sums(0, 1) * sums(1, 2),
-                         sums(0, 0) * sums(1, 2) - sums(0, 1) * sums(0, 2)) /
-         determinant;
-}
 
 }  // namespace
 
@@ -51,6 +55,16 @@ ChannelCheck::ChannelCheck(const Structure& structure, const std::vector<SensorA
       seen_(axes.size()),
       noise_(axes.size()) {
   for (const SensorAxis& axis : axes) along_.push_back(direction_of(structure, axis));
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    if (axes[a].story == 0 || !axes[a].horizontal()) continue;
+    Usual& usual = usual_[a];
+    usual.from = {static_cast<Eigen::Index>(a)};
+    for (std::size_t b = 0; b < axes.size(); ++b)
+      if (b != a && usual.from.size() < kMostMotions && axes[b].story > 0 && axes[b].horizontal() &&
+          along_[a] == along_[b])
+        usual.from.push_back(static_cast<Eigen::Index>(b));
+    usual.forget();
+  }
   const auto columns = static_cast<Eigen::Index>(axes.size());
   read_.setConstant(kWindow_s * per_second_, columns, kNaN);
   expected_ = window_read_ = window_expected_ = read_;
@@ -61,7 +75,7 @@ ChannelCheck::ChannelCheck(const Structure& structure, const std::vector<SensorA
 
 void ChannelCheck::forget() {
   restart();
-  std::fill(usual_.begin(), usual_.end(), Usual{});
+  for (Usual& usual : usual_) usual.forget();
   for (Doubt& doubt : doubts_) doubt.seconds = 0;
 }
 
@@ -75,8 +89,8 @@ const std::vector<ChannelNews>& ChannelCheck::push(Time time, const ChannelInsta
   for (Eigen::MatrixXd& part : from_input_)
     if (part.size() > 0) part.row(newest_).setConstant(kNaN);
   for (Eigen::Index i = 0; i < instant.from_input.rows(); ++i)
-    if (Eigen::MatrixXd& part = from_input_[static_cast<std::size_t>(
-            instant.inputs[static_cast<std::size_t>(i)])];
+    if (Eigen::MatrixXd& part =
+            from_input_[static_cast<std::size_t>(instant.inputs[static_cast<std::size_t>(i)])];
         part.size() > 0)
       part.row(newest_) = instant.from_input.row(i);
   const int rows = static_cast<int>(read_.rows());
@@ -86,15 +100,15 @@ const std::vector<ChannelNews>& ChannelCheck::push(Time time, const ChannelInsta
   if (filled_ < rows || second_ % per_second_ != 0) return news_;
   time_ = time;
   window_read_ = in_order(read_);
-  window_expected_ = in_order(expected_);
+  window_expected_ = motion_ = in_order(expected_);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     noise_[a] = std::isfinite(noise_variance[a]) ? rows * noise_variance[a] : 0;
     correct(a);
     seen_[a] = look_at(a, noise_[a]);
   }
-  const bool quiet = std::none_of(seen_.begin(), seen_.end(),
-                                  [](const Seen& seen) { return seen.departs; });
-  if (second_ == 0 && quiet) learn();
+  const bool quiet =
+      std::none_of(seen_.begin(), seen_.end(), [](const Seen& seen) { return seen.departs; });
+  if (second_ == 0) learn(quiet);
   decide(find_suspects());
   return news_;
 }
@@ -107,18 +121,27 @@ Eigen::MatrixXd ChannelCheck::in_order(const Eigen::MatrixXd& ring) const {
   return out;
 }
 
-/// Gives the expected motion the gain and the delay that the channel usually has beside the model.
+void ChannelCheck::Usual::forget() {
+  const auto unknowns = static_cast<Eigen::Index>(from.size()) + 1;
+  sums.setZero(unknowns + 1, unknowns + 1);
+  law.setZero(unknowns);
+  waiting = sums;
+  waiting_departure = share = mean = spread = input_share = 0;
+  windows = 0;
+}
+
+/// Corrects the expected motion by what the model usually lacks at this channel.
 void ChannelCheck::correct(std::size_t axis) {
   const Usual& usual = usual_[axis];
-  if (usual.windows < kLearned) return;
-  const Eigen::Vector2d law = fitted(usual.sums);
-  if (!law.allFinite()) return;
-  const auto column = window_expected_.col(static_cast<Eigen::Index>(axis));
-  const Eigen::VectorXd motion = column;
-  const Eigen::Index last = motion.size() - 1;
+  if (usual.from.empty() || usual.windows < kLearned) return;
+  const Eigen::Index last = read_.rows() - 1;
+  const auto own = static_cast<Eigen::Index>(axis);
   for (Eigen::Index i = 0; i <= last; ++i) {
-    const double slope = (motion[std::min(i + 1, last)] - motion[std::max<Eigen::Index>(i - 1, 0)]) / 2;
-    window_expected_(i, static_cast<Eigen::Index>(axis)) = law[0] * motion[i] + law[1] * slope;
+    const Eigen::Index next = std::min(i + 1, last), before = std::max<Eigen::Index>(i - 1, 0);
+    double sum = usual.law[0] * (motion_(next, own) - motion_(before, own)) / 2;
+    for (std::size_t k = 0; k < usual.from.size(); ++k)
+      sum += usual.law[static_cast<Eigen::Index>(k) + 1] * motion_(i, usual.from[k]);
+    window_expected_(i, own) = sum;
   }
 }
 
@@ -133,21 +156,24 @@ ChannelCheck::Seen ChannelCheck::look_at(std::size_t axis, double noise) const {
   seen.left = (read - expected).squaredNorm();
   seen.judged = usual.windows >= kLearned && seen.motion > kAbove * noise;
   if (!seen.judged) return seen;
-  const double explained = fitted(usual.sums).dot(usual.sums.topRightCorner<2, 1>());
-  const double share = std::max(usual.sums(2, 2) - explained, 0.0) / explained;
-  seen.usual = share * seen.motion + noise;
-  seen.departure = std::log(seen.left / seen.usual);
-  const double deviation = std::sqrt(usual.spread / usual.windows);
+  seen.usual = usual.share * seen.motion + noise;
+  seen.departure = std::log(seen.left / seen.usual) - usual.mean;
+  const double deviation = std::sqrt(usual.spread);
   seen.departs = seen.departure > std::max(kDeparts, kDeviations * deviation) &&
                  seen.left - seen.usual > kMatters * kMatters * seen.motion;
   return seen;
 }
 
-void ChannelCheck::learn() {
+/// Learns from the window before this one, if no channel departs in this one. So a fault is seen
+/// before it can be learned.
+void ChannelCheck::learn(bool quiet) {
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
     Usual& usual = usual_[axis];
     const auto a = static_cast<Eigen::Index>(axis);
-    if (doubts_[axis].raised || !window_read_.col(a).allFinite()) continue;
+    if (!quiet || doubts_[axis].raised || !window_read_.col(a).allFinite()) {
+      usual.waiting.setZero();
+      continue;
+    }
     if (axes_[axis].story == 0) {
       double floors = 0;
       for (std::size_t f = 0; f < axes_.size(); ++f)
@@ -161,20 +187,34 @@ void ChannelCheck::learn() {
     }
     const Seen& seen = seen_[axis];
     if (!(seen.motion > kAbove * noise_[axis])) continue;
-    // The motion before correct(), in the order of the ring: only sums are taken.
-    Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
-    const Eigen::Index rows = read_.rows();
-    for (Eigen::Index i = 1; i + 1 < rows; ++i) {
-      const auto at = [&](Eigen::Index k) { return (newest_ + k) % rows; };
-      const Eigen::Vector3d row(expected_(at(i), a),
-                                (expected_(at(i + 1), a) - expected_(at(i - 1), a)) / 2,
-                                read_(at(i), a));
+    if (!motion_(Eigen::all, usual.from).allFinite()) continue;
+    const double weight = 1.0 / std::min(usual.windows + 1, kForgets);
+    const auto unknowns = usual.law.size();
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(unknowns + 1, unknowns + 1);
+    Eigen::VectorXd row(unknowns + 1);
+    for (Eigen::Index i = 1; i + 1 < motion_.rows(); ++i) {
+      row[0] = (motion_(i + 1, a) - motion_(i - 1, a)) / 2;
+      row.segment(1, unknowns - 1) = motion_(i, usual.from).transpose();
+      row[unknowns] = window_read_(i, a);
       sums += row * row.transpose();
     }
-    if (!(sums(0, 0) > 0)) continue;
-    const double kept = usual.windows < kForgets ? 1 : 1 - 1.0 / kForgets;
-    usual.sums = kept * usual.sums + sums / sums(0, 0);  // every window counts alike
-    if (seen.judged) usual.spread = kept * usual.spread + seen.departure * seen.departure;
+    sums /= sums(1, 1);  // every window counts alike
+    usual.waiting.swap(sums);
+    const double departure =
+        std::exchange(usual.waiting_departure, seen.judged ? seen.departure : 0);
+    if (sums.isZero(0)) continue;
+    usual.sums += weight * (sums - usual.sums);
+    Eigen::MatrixXd normal = usual.sums.topLeftCorner(unknowns, unknowns);
+    normal.diagonal() *= 1 + kRidge;
+    const Eigen::VectorXd right = usual.sums.col(unknowns).head(unknowns);
+    usual.law = Ldlt(normal).solve(right);
+    if (!usual.law.allFinite()) {
+      usual.forget();
+      continue;
+    }
+    usual.share = std::max(usual.sums(unknowns, unknowns) - usual.law.dot(right), 0.0);
+    usual.mean += weight * departure;
+    usual.spread += weight * (departure * departure - usual.spread);
     usual.windows = std::min(usual.windows + 1, kForgets);
   }
 }
@@ -208,7 +248,7 @@ double ChannelCheck::departure(const std::vector<int>& axes) const {
   return motion > 0 ? std::sqrt(beyond / motion) : 0;
 }
 
-/// Returns base channels that do not move although the floors do, or that repeat another channel.
+/// Returns base channels that do not move although the floors do.
 std::vector<ChannelCheck::Suspect> ChannelCheck::lost_inputs(const std::vector<int>& floors) const {
   std::vector<Suspect> out;
   double motion = 0;
@@ -220,32 +260,36 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::lost_inputs(const std::vector<i
     const auto column = window_read_.col(static_cast<Eigen::Index>(b));
     if (axes_[b].story != 0 || !axes_[b].horizontal() || !column.allFinite()) continue;
     const double energy = column.squaredNorm();
-    const auto axis = static_cast<int>(b);
     if (usual_[b].windows >= kLearned && energy < kDead * usual_[b].input_share * motion)
-      out.push_back({axis, {ChannelFault::only_noise, 0, -1, energy}, departure(floors)});
-    for (const int other : floors) {
-      const double left = (column - window_read_.col(other)).squaredNorm();
-      if (left < kMatters * kMatters * energy)
-        out.push_back({axis, {ChannelFault::repeats, 0, other, left}, departure(floors)});
-    }
+      out.push_back(
+          {static_cast<int>(b), {ChannelFault::only_noise, 0, -1, energy}, departure(floors)});
   }
   return out;
 }
 
-/// Returns the base channel whose fault explains how the floors depart, if there is one.
+/// Returns the base channel that repeats a floor's, or whose fault explains how the floors depart.
 std::vector<ChannelCheck::Suspect> ChannelCheck::faulty_input(
     const std::vector<int>& floors) const {
   const Eigen::Index rows = rows_since_onset(floors);
   const Eigen::MatrixXd read = window_read_.bottomRows(rows)(Eigen::all, floors);
   const Eigen::MatrixXd expected = window_expected_.bottomRows(rows)(Eigen::all, floors);
   std::vector<Suspect> out;
-  double least = kExplained * (read - expected).squaredNorm();
+  const double before = (read - expected).squaredNorm();
+  double least = before;
   for (std::size_t b = 0; b < axes_.size(); ++b) {
     if (from_input_[b].size() == 0) continue;
+    const auto column = window_read_.col(static_cast<Eigen::Index>(b)).tail(rows);
+    for (const int other : floors) {
+      const double left = (column - window_read_.col(other).tail(rows)).squaredNorm();
+      if (left < kMatters * kMatters * column.squaredNorm())
+        return {{static_cast<int>(b), {ChannelFault::repeats, 0, other, left}, departure(floors)}};
+    }
     const Eigen::MatrixXd part = in_order(from_input_[b]).bottomRows(rows)(Eigen::all, floors);
     if (!part.allFinite()) continue;
     const ChannelLaw law = law_of_input({read - expected + part, part, rate_hz_});
-    if (law.fault == ChannelFault::unlike || !(law.left < least)) continue;
+    const bool of_gain = law.fault == ChannelFault::gain || law.fault == ChannelFault::polarity;
+    const double most = (of_gain ? kExplained : kOfTime) * before;
+    if (law.fault == ChannelFault::unlike || !(law.left < std::min(least, most))) continue;
     least = law.left;
     out = {{static_cast<int>(b), law, departure(floors)}};
   }
@@ -267,11 +311,10 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::find_suspects() const {
   for (const int a : judged)
     if (seen_[static_cast<std::size_t>(a)].departure > kAlike * most) apart.push_back(a);
   const std::string& group = axes_[static_cast<std::size_t>(apart.front())].group;
-  const bool alone =
-      2 * apart.size() <= judged.size() &&
-      (apart.size() == 1 || std::all_of(apart.begin(), apart.end(), [&](int a) {
-         return !group.empty() && axes_[static_cast<std::size_t>(a)].group == group;
-       }));
+  const bool alone = 2 * apart.size() <= judged.size() &&
+                     (apart.size() == 1 || std::all_of(apart.begin(), apart.end(), [&](int a) {
+                        return !group.empty() && axes_[static_cast<std::size_t>(a)].group == group;
+                      }));
   if (!alone)
     if (const std::vector<Suspect> base = faulty_input(judged); !base.empty()) return base;
   if (apart.size() > kMostAtOnce) return {};
@@ -280,14 +323,26 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::find_suspects() const {
     const Eigen::Index rows = rows_since_onset({a});
     const Eigen::MatrixXd read = window_read_.bottomRows(rows);
     const Eigen::MatrixXd expected = window_expected_.bottomRows(rows);
-    const double before = (read.col(a) - expected.col(a)).squaredNorm();
     const ChannelLaw law = law_of({read, expected, rate_hz_}, a);
-    // A law for each of several channels must explain more than a change of the building could.
-    const double share = std::exp(-kAlike * seen_[static_cast<std::size_t>(a)].departure);
-    if (!alone && !(law.fault != ChannelFault::unlike && law.left < share * before)) return {};
+    // A change of the building is like a delay or a gain too, but leaves more than these do.
+    const Seen& seen = seen_[static_cast<std::size_t>(a)];
+    const double usual = seen.usual * expected.col(a).squaredNorm() / seen.motion;
+    const double limit = std::max(kDeparts, kTight * seen.departure);
+    const bool tight = law.fault != ChannelFault::unlike && std::log(law.left / usual) < limit;
+    if (!tight && !(alone && witnesses(a) >= kWitnesses)) return {};
     out.push_back({a, law, departure({a})});
   }
   return out;
+}
+
+/// Returns the number of other channels of its direction that move as ever.
+int ChannelCheck::witnesses(int axis) const {
+  int count = 0;
+  for (std::size_t b = 0; b < axes_.size(); ++b)
+    if (along_[b] == along_[static_cast<std::size_t>(axis)] && seen_[b].judged &&
+        seen_[b].departure <= kAlike * seen_[static_cast<std::size_t>(axis)].departure)
+      ++count;
+  return count;
 }
 
 /// Returns the energy of motion that can show that the fault is over.
@@ -311,12 +366,13 @@ void ChannelCheck::decide(const std::vector<Suspect>& suspects) {
     const Suspect* const suspected = suspect(a);
     const ChannelLaw* law = suspected == nullptr ? nullptr : &suspected->law;
     const bool known = axes_[a].story == 0 || seen_[a].motion >= doubt.motion;
-    const bool against = doubt.raised ? known && law == nullptr && !seen_[a].departs : law != nullptr;
+    const bool against =
+        doubt.raised ? known && law == nullptr && !seen_[a].departs : law != nullptr;
     doubt.seconds = against ? doubt.seconds + 1 : 0;
     ChannelNews news{static_cast<int>(a), AlarmState::changed, time_, doubt.since, {}, 0, others};
     if (suspected != nullptr) news.departure = suspected->departure;
-    if (doubt.raised) doubt.age = std::min(doubt.age + 1, kWindow_s + 1);
-    const bool whole = doubt.age == kWindow_s;  // the fault now fills the window
+    if (doubt.raised) doubt.age = std::min(doubt.age + 1, kFinal_s + 1);
+    const bool whole = doubt.age == kWindow_s || doubt.age == kFinal_s;
     const bool named = doubt.law.fault == ChannelFault::unlike && law != nullptr &&
                        law->fault != ChannelFault::unlike;
     if (!doubt.raised && doubt.seconds >= kConfirm_s) {

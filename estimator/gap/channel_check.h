@@ -72,13 +72,19 @@ class ChannelCheck {
  private:
   /// What a healthy channel leaves, learned window by window.
   struct Usual {
-    Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();  ///< of motion, its slope and the reading
-    double spread = 0;       ///< sum of squares of ln(left / usual) of windows
-    double input_share = 0;  ///< base only: least energy of the reading over that of the floors
+    std::vector<Eigen::Index> from;  ///< axes whose expected motions make up this channel's
+    Eigen::MatrixXd sums;            ///< products of slope, motions and reading
+    Eigen::MatrixXd waiting;         ///< of the last window, which does not count yet
+    double waiting_departure = 0;    ///< Seen::departure of that window
+    Eigen::VectorXd law;             ///< factors of the own slope and the motions
+    double share = 0;                ///< energy that the law leaves over that of the motion
+    double mean = 0, spread = 0;     ///< mean and variance of ln(left / usual) of windows
+    double input_share = 0;          ///< base only: least energy of the reading over the floors'
     int windows = 0;
 
+    void forget();
     void archive(auto& a) {
-      a.finite(sums, spread, input_share);
+      a.finite(sums, waiting, waiting_departure, law, share, mean, spread, input_share);
       a.within(windows, 0, a.kMaxCount);
     }
   };
@@ -98,11 +104,11 @@ class ChannelCheck {
   };
   /// One axis in the present window.
   struct Seen {
-    bool judged = false;    ///< it should move enough to be judged
-    double usual = 0;       ///< energy that a healthy channel leaves
-    double left = 0;        ///< energy that it leaves
-    double motion = 0;      ///< energy of its expected motion
-    double departure = 0;   ///< ln(left / usual)
+    bool judged = false;   ///< it should move enough to be judged
+    double usual = 0;      ///< energy that a healthy channel leaves
+    double left = 0;       ///< energy that it leaves
+    double motion = 0;     ///< energy of its expected motion
+    double departure = 0;  ///< ln(left / usual)
     bool departs = false;
   };
 
@@ -117,11 +123,12 @@ class ChannelCheck {
   void correct(std::size_t axis);
   Seen look_at(std::size_t axis, double noise_variance) const;
   Eigen::Index rows_since_onset(const std::vector<int>& axes) const;
-  void learn();
+  void learn(bool quiet);
   std::vector<Suspect> find_suspects() const;
   std::vector<Suspect> lost_inputs(const std::vector<int>& floors) const;
   std::vector<Suspect> faulty_input(const std::vector<int>& floors) const;
   double departure(const std::vector<int>& axes) const;
+  int witnesses(int axis) const;
   double least_motion(std::size_t axis, const ChannelLaw& law) const;
   void decide(const std::vector<Suspect>& suspects);
 
@@ -141,7 +148,8 @@ class ChannelCheck {
   std::vector<ChannelNews> news_;
 
   // Of the present window.
-  Eigen::MatrixXd window_read_, window_expected_;  ///< with the usual law
+  Eigen::MatrixXd window_read_, motion_;  ///< in the order of time; motion of the model
+  Eigen::MatrixXd window_expected_;       ///< motion_ with the usual law
   std::vector<Seen> seen_;
   std::vector<double> noise_;
 };

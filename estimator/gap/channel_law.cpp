@@ -11,9 +11,9 @@ namespace {
 
 using Column = Eigen::VectorXd;
 
-constexpr double kHalved = 0.5;      ///< a law with one more number must leave at most this share
-constexpr double kLatest_s = 0.25;   ///< longest delay searched
-constexpr double kStart = 0.2;       ///< share of the window in which a low-pass forgets its start
+constexpr double kHalved = 0.5;     ///< a law with one more number must leave at most this share
+constexpr double kLatest_s = 0.25;  ///< longest delay searched
+constexpr double kStart = 0.2;      ///< share of the window in which a low-pass forgets its start
 
 /// Pairs of a reading and the motion it should show: one for an axis, several for an input.
 struct Pairs {
@@ -83,10 +83,9 @@ void add_times(const Pairs& pairs, double rate_hz, ChannelLaw& best) {
   take_better(best, 1, ChannelFault::late, (static_cast<double>(shift) + rest) / rate_hz,
               whole * (energy - rest * right[0]));
   const double determinant = normal(0, 0) * normal(1, 1) - normal(0, 1) * normal(0, 1);
-  const Eigen::Vector2d both =
-      Eigen::Vector2d(normal(1, 1) * right[0] - normal(0, 1) * right[1],
-                      normal(0, 0) * right[1] - normal(0, 1) * right[0]) /
-      determinant;
+  const Eigen::Vector2d both = Eigen::Vector2d(normal(1, 1) * right[0] - normal(0, 1) * right[1],
+                                               normal(0, 0) * right[1] - normal(0, 1) * right[0]) /
+                               determinant;
   take_better(best, best.fault == ChannelFault::late ? kHalved : 1, ChannelFault::clock,
               2 * both[1] / static_cast<double>(inner), whole * (energy - both.dot(right)));
 }

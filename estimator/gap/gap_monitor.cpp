@@ -12,6 +12,9 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr int kHeld = RunningModel::kDelay + 1;
+/// Share of the settling time from which channels are checked: what remains of the start is then
+/// small beside a fault, and counts as usual.
+constexpr double kCheckFrom = 0.5;
 /// Inputs up to which the response to each of them is known: two directions with two axes each.
 constexpr std::size_t kMostParts = 4;
 
@@ -48,7 +51,8 @@ GapMonitor::Current::Current(const GapMonitor& m, const GapModel& model)
           1e6 / m.rate_hz_ *
           (matched_triple(m.rate_hz_).delay + RunningModel::kDelay + correction.held_back()))),
       held(m.axes_.size() * kHeld, kNaN) {
-  if (!model.effects.empty() || m.inputs_.used.size() > kMostParts) return;  // nonlinear, or too many
+  if (!model.effects.empty() || m.inputs_.used.size() > kMostParts)
+    return;  // nonlinear, or too many
   for (std::size_t i = 0; i + 1 < m.inputs_.used.size(); ++i)
     parts.emplace_back(m.structure_, m.stories_, model, m.inputs_.inputs, m.rate_hz_,
                        m.high_pass_hz_, m.late(correction.rest()));
@@ -186,7 +190,7 @@ void GapMonitor::drive(Current& c, const std::vector<double>& accel) {
   }
 }
 
-void GapMonitor::compare(Current& c) {
+void GapMonitor::compare(Current& c, bool settled) {
   const int then = (c.newest + RunningModel::kDelay) % kHeld;
   const bool separable = c.parts.size() + 1 == inputs_.used.size();
   const auto last = static_cast<Eigen::Index>(c.parts.size());
@@ -202,7 +206,7 @@ void GapMonitor::compare(Current& c) {
           from_input_(i, column) += weight * c.parts[static_cast<std::size_t>(i)].accel_abs(dof);
       from_input_(last, column) = expected_[a] - from_input_.col(column).head(last).sum();
     }
-    if (std::isfinite(read_[a]) && !seen_[a].empty() && doubted()[a] == 0)
+    if (settled && std::isfinite(read_[a]) && !seen_[a].empty() && doubted()[a] == 0)
       c.meter.add(a, read_[a], expected_[a]);
   }
 }
@@ -259,11 +263,13 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   }
   drive(c, accel);
   c.settled_s += 1 / rate_hz_;
-  if (c.settled_s < c.running.settle_s()) return nullptr;
-  compare(c);
-  if (c.meter.ends_second()) noise_variances(c, noise_density);
+  if (c.settled_s < kCheckFrom * c.running.settle_s()) return nullptr;
+  const bool settled = c.settled_s >= c.running.settle_s();
+  compare(c, settled);
+  if (c.meter.ends_second() || !settled) noise_variances(c, noise_density);
   channel_news_ = check_.push(set.time - c.delay, {read_, expected_, from_input_, inputs_.used},
                               noise_variance_);
+  if (!settled) return nullptr;
   if (!channel_news_.empty()) c.meter.restart();
   if (!c.meter.close(set.time - c.delay, noise_variance_)) return nullptr;
   if (base_doubted()) return &c.meter.gap();

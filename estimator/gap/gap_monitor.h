@@ -44,8 +44,8 @@ class GapMonitor {
   const GapNews* news() const { return news_; }
   /// Returns the doubts about channels that began, changed or ended at the last push().
   const std::vector<ChannelNews>& channel_news() const { return channel_news_; }
-  /// Returns true while a channel seems to misread and is not in doubt yet: windows that end now may
-  /// be wrong.
+  /// Returns true while a channel seems to misread and is not in doubt yet: windows that end now
+  /// may be wrong.
   bool suspects() const { return check_.suspects(); }
   /// Returns by axis: 1 if its channel is in doubt. Such a channel does not count in the gap.
   const std::vector<std::uint8_t>& doubted() const { return check_.doubted(); }
@@ -100,7 +100,7 @@ class GapMonitor {
   void take_inputs();
   void hold(Current& c);
   void drive(Current& c, const std::vector<double>& accel);
-  void compare(Current& c);
+  void compare(Current& c, bool settled);
   bool base_doubted() const;
   void noise_variances(const Current& c, const std::vector<double>& noise_density);
   /// Adds the parameter that has changed most significantly to the news.

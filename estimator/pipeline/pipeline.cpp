@@ -89,9 +89,9 @@ class Pipeline::Implementation {
   const SampleSet* instant_ = nullptr;  ///< for the estimator
   SampleSet trusted_;
   std::vector<std::uint8_t> left_out_;
-  bool wrong_ = false;  ///< samples in the windows are wrong
-  int missing_ = 0;                     ///< instants without samples before it
-  bool looking_back_ = false;           ///< late windows are asked for
+  bool wrong_ = false;         ///< samples in the windows are wrong
+  int missing_ = 0;            ///< instants without samples before it
+  bool looking_back_ = false;  ///< late windows are asked for
   std::int64_t sets_ = 0, windows_ = 0;
 };
 

@@ -192,8 +192,8 @@ void Estimation::compare_gap(const estimator::SampleSet& instant) {
   listener_->on_gap(*news);
 }
 
-/// Returns false while a channel seems to misread, and while a building in groups of stories is seen
-/// by other channels than those that its baseline was learned with.
+/// Returns false while a channel seems to misread, and while a building in groups of stories is
+/// seen by other channels than those that its baseline was learned with.
 bool Estimation::speaks_of_building() const {
   if (!gap_) return true;
   const auto& doubted = gap_->doubted();

@@ -136,7 +136,7 @@ std::optional<event_t> StampEvents::of_clock(std::size_t axis, double median_us,
                         "{} samples between the instants of the others, so its samples are left "
                         "out. Check the node's clock",
                         m.place)
-                    : fmt::format("the clock of {} agrees with the others again", m.place);
+                  : fmt::format("the clock of {} agrees with the others again", m.place);
   return m;
 }
 

@@ -15,9 +15,9 @@ namespace framewatch::daemon {
 namespace {
 
 /// Kinds of events whose place is a channel with wrong or missing samples.
-constexpr std::array kOfChannels = {"channel_silent", "channel_stuck",  "channel_rate",
+constexpr std::array kOfChannels = {"channel_silent", "channel_stuck",   "channel_rate",
                                     "channel_clock",  "channel_doubted", "absurd_samples",
-                                    "two_senders", "losses",         "channel_table"};
+                                    "two_senders",    "losses",          "channel_table"};
 
 bool is_channel(const Config& config, const std::string& place) {
   const auto& axes = config.pipeline.axes;
