@@ -28,10 +28,12 @@ constexpr double kTight = 1.0 / 3;  ///< share of the departure that a law may l
 constexpr int kWitnesses = 3;
 /// Share of the energy that a law of time of the base may leave. All floors follow it once their
 /// earlier motion has died away. A change of the building is similar, but leaves more.
-constexpr double kOfTime = 0.05;
-constexpr int kConfirm_s = 5;  ///< consecutive seconds until a doubt is raised
-constexpr int kLeast_s = 2;    ///< of readings that show a law
-/// Seconds after which a law is told for the last time: the motion before the fault has died away.
+constexpr double kOfTime = 0.12;
+/// Consecutive seconds until a doubt is raised: with a law, and without one. A change of the
+/// building reaches the other channels within its periods.
+constexpr int kConfirm_s = 3, kConfirmUnlike_s = 5;
+constexpr int kLeast_s = 2;  ///< of readings that show a law
+/// Seconds after which the law of a doubt is final: the motion before the fault has died away.
 constexpr int kFinal_s = 30;
 constexpr int kClear_s = 30;  ///< consecutive seconds until it is cleared
 /// A base channel that shows this share of the least energy that it ever had beside the floors'.
@@ -109,7 +111,7 @@ const std::vector<ChannelNews>& ChannelCheck::push(Time time, const ChannelInsta
   const bool quiet =
       std::none_of(seen_.begin(), seen_.end(), [](const Seen& seen) { return seen.departs; });
   if (second_ == 0) learn(quiet);
-  decide(find_suspects());
+  decide(find_candidates());
   return news_;
 }
 
@@ -249,8 +251,9 @@ double ChannelCheck::departure(const std::vector<int>& axes) const {
 }
 
 /// Returns base channels that do not move although the floors do.
-std::vector<ChannelCheck::Suspect> ChannelCheck::lost_inputs(const std::vector<int>& floors) const {
-  std::vector<Suspect> out;
+std::vector<ChannelCheck::Candidate> ChannelCheck::lost_inputs(
+    const std::vector<int>& floors) const {
+  std::vector<Candidate> out;
   double motion = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
     if (const auto column = window_read_.col(static_cast<Eigen::Index>(a));
@@ -261,19 +264,21 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::lost_inputs(const std::vector<i
     if (axes_[b].story != 0 || !axes_[b].horizontal() || !column.allFinite()) continue;
     const double energy = column.squaredNorm();
     if (usual_[b].windows >= kLearned && energy < kDead * usual_[b].input_share * motion)
-      out.push_back(
-          {static_cast<int>(b), {ChannelFault::only_noise, 0, -1, energy}, departure(floors)});
+      out.push_back({static_cast<int>(b),
+                     {ChannelFault::only_noise, 0, -1, energy},
+                     departure(floors),
+                     true});
   }
   return out;
 }
 
 /// Returns the base channel that repeats a floor's, or whose fault explains how the floors depart.
-std::vector<ChannelCheck::Suspect> ChannelCheck::faulty_input(
+std::vector<ChannelCheck::Candidate> ChannelCheck::faulty_input(
     const std::vector<int>& floors) const {
   const Eigen::Index rows = rows_since_onset(floors);
   const Eigen::MatrixXd read = window_read_.bottomRows(rows)(Eigen::all, floors);
   const Eigen::MatrixXd expected = window_expected_.bottomRows(rows)(Eigen::all, floors);
-  std::vector<Suspect> out;
+  std::vector<Candidate> out;
   const double before = (read - expected).squaredNorm();
   double least = before;
   for (std::size_t b = 0; b < axes_.size(); ++b) {
@@ -282,7 +287,10 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::faulty_input(
     for (const int other : floors) {
       const double left = (column - window_read_.col(other).tail(rows)).squaredNorm();
       if (left < kMatters * kMatters * column.squaredNorm())
-        return {{static_cast<int>(b), {ChannelFault::repeats, 0, other, left}, departure(floors)}};
+        return {{static_cast<int>(b),
+                 {ChannelFault::repeats, 0, other, left},
+                 departure(floors),
+                 true}};
     }
     const Eigen::MatrixXd part = in_order(from_input_[b]).bottomRows(rows)(Eigen::all, floors);
     if (!part.allFinite()) continue;
@@ -291,12 +299,12 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::faulty_input(
     const double most = (of_gain ? kExplained : kOfTime) * before;
     if (law.fault == ChannelFault::unlike || !(law.left < std::min(least, most))) continue;
     least = law.left;
-    out = {{static_cast<int>(b), law, departure(floors)}};
+    out = {{static_cast<int>(b), law, departure(floors), true}};
   }
   return out;
 }
 
-std::vector<ChannelCheck::Suspect> ChannelCheck::find_suspects() const {
+std::vector<ChannelCheck::Candidate> ChannelCheck::find_candidates() const {
   double most = 0;
   std::vector<int> judged, apart;
   bool departs = false;
@@ -306,7 +314,7 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::find_suspects() const {
     departs = departs || seen_[a].departs;
     most = std::max(most, seen_[a].departure);
   }
-  if (const std::vector<Suspect> lost = lost_inputs(judged); !lost.empty()) return lost;
+  if (const std::vector<Candidate> lost = lost_inputs(judged); !lost.empty()) return lost;
   if (!departs) return {};
   for (const int a : judged)
     if (seen_[static_cast<std::size_t>(a)].departure > kAlike * most) apart.push_back(a);
@@ -316,9 +324,9 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::find_suspects() const {
                         return !group.empty() && axes_[static_cast<std::size_t>(a)].group == group;
                       }));
   if (!alone)
-    if (const std::vector<Suspect> base = faulty_input(judged); !base.empty()) return base;
+    if (const std::vector<Candidate> base = faulty_input(judged); !base.empty()) return base;
   if (apart.size() > kMostAtOnce) return {};
-  std::vector<Suspect> out;
+  std::vector<Candidate> out;
   for (const int a : apart) {
     const Eigen::Index rows = rows_since_onset({a});
     const Eigen::MatrixXd read = window_read_.bottomRows(rows);
@@ -328,9 +336,10 @@ std::vector<ChannelCheck::Suspect> ChannelCheck::find_suspects() const {
     const Seen& seen = seen_[static_cast<std::size_t>(a)];
     const double usual = seen.usual * expected.col(a).squaredNorm() / seen.motion;
     const double limit = std::max(kDeparts, kTight * seen.departure);
-    const bool tight = law.fault != ChannelFault::unlike && std::log(law.left / usual) < limit;
+    const bool tight = law.fault == ChannelFault::only_noise ||
+                       (law.fault != ChannelFault::unlike && std::log(law.left / usual) < limit);
     if (!tight && !(alone && witnesses(a) >= kWitnesses)) return {};
-    out.push_back({a, law, departure({a})});
+    out.push_back({a, law, departure({a}), tight});
   }
   return out;
 }
@@ -351,31 +360,32 @@ double ChannelCheck::least_motion(std::size_t axis, const ChannelLaw& law) const
   return std::max(share * seen_[axis].motion, kAbove * noise_[axis]);
 }
 
-void ChannelCheck::decide(const std::vector<Suspect>& suspects) {
-  const auto suspect = [&](std::size_t a) -> const Suspect* {
-    for (const Suspect& s : suspects)
+void ChannelCheck::decide(const std::vector<Candidate>& candidates) {
+  const auto candidate_of = [&](std::size_t a) -> const Candidate* {
+    for (const Candidate& s : candidates)
       if (s.axis == static_cast<int>(a)) return &s;
     return nullptr;
   };
   double others = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (seen_[a].judged && suspect(a) == nullptr && doubted_[a] == 0)
+    if (seen_[a].judged && candidate_of(a) == nullptr && doubted_[a] == 0)
       others = std::max(others, departure({static_cast<int>(a)}));
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     Doubt& doubt = doubts_[a];
-    const Suspect* const suspected = suspect(a);
-    const ChannelLaw* law = suspected == nullptr ? nullptr : &suspected->law;
+    const Candidate* const candidate = candidate_of(a);
+    const ChannelLaw* law = candidate == nullptr ? nullptr : &candidate->law;
     const bool known = axes_[a].story == 0 || seen_[a].motion >= doubt.motion;
     const bool against =
         doubt.raised ? known && law == nullptr && !seen_[a].departs : law != nullptr;
     doubt.seconds = against ? doubt.seconds + 1 : 0;
     ChannelNews news{static_cast<int>(a), AlarmState::changed, time_, doubt.since, {}, 0, others};
-    if (suspected != nullptr) news.departure = suspected->departure;
+    if (candidate != nullptr) news.departure = candidate->departure;
     if (doubt.raised) doubt.age = std::min(doubt.age + 1, kFinal_s + 1);
     const bool whole = doubt.age == kWindow_s || doubt.age == kFinal_s;
     const bool named = doubt.law.fault == ChannelFault::unlike && law != nullptr &&
                        law->fault != ChannelFault::unlike;
-    if (!doubt.raised && doubt.seconds >= kConfirm_s) {
+    if (!doubt.raised && candidate != nullptr &&
+        doubt.seconds >= (candidate->sure ? kConfirm_s : kConfirmUnlike_s)) {
       doubt = {true, 0, 0, *law, time_ - std::chrono::seconds(kWindow_s), least_motion(a, *law)};
       news.state = AlarmState::raised;
       news.since = doubt.since;

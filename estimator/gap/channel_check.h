@@ -50,11 +50,11 @@ class ChannelCheck {
   /// Forgets everything, because the model is another one.
   void forget();
   /// Takes one instant. noise_variance: by axis, of what is compared; NaN or 0 if unknown. Returns
-  /// the news of this instant; there are none but once a second. Valid until the next call.
+  /// the news of this instant, at most once a second, valid until the next call.
   const std::vector<ChannelNews>& push(Time time, const ChannelInstant& instant,
                                        const std::vector<double>& noise_variance);
   /// Returns true while a channel seems to misread and is not in doubt yet.
-  bool suspects() const {
+  bool has_candidate() const {
     return std::any_of(doubts_.begin(), doubts_.end(),
                        [](const Doubt& doubt) { return !doubt.raised && doubt.seconds > 0; });
   }
@@ -70,7 +70,7 @@ class ChannelCheck {
   }
 
  private:
-  /// What a healthy channel leaves, learned window by window.
+  /// Holds what a healthy channel leaves, learned window by window.
   struct Usual {
     std::vector<Eigen::Index> from;  ///< axes whose expected motions make up this channel's
     Eigen::MatrixXd sums;            ///< products of slope, motions and reading
@@ -113,10 +113,11 @@ class ChannelCheck {
   };
 
   /// A channel that seems to misread in the present window.
-  struct Suspect {
+  struct Candidate {
     int axis;
     ChannelLaw law;
     double departure;  ///< ChannelNews::departure
+    bool sure;         ///< its law leaves little
   };
 
   Eigen::MatrixXd in_order(const Eigen::MatrixXd& ring) const;
@@ -124,13 +125,13 @@ class ChannelCheck {
   Seen look_at(std::size_t axis, double noise_variance) const;
   Eigen::Index rows_since_onset(const std::vector<int>& axes) const;
   void learn(bool quiet);
-  std::vector<Suspect> find_suspects() const;
-  std::vector<Suspect> lost_inputs(const std::vector<int>& floors) const;
-  std::vector<Suspect> faulty_input(const std::vector<int>& floors) const;
+  std::vector<Candidate> find_candidates() const;
+  std::vector<Candidate> lost_inputs(const std::vector<int>& floors) const;
+  std::vector<Candidate> faulty_input(const std::vector<int>& floors) const;
   double departure(const std::vector<int>& axes) const;
   int witnesses(int axis) const;
   double least_motion(std::size_t axis, const ChannelLaw& law) const;
-  void decide(const std::vector<Suspect>& suspects);
+  void decide(const std::vector<Candidate>& candidates);
 
   std::vector<SensorAxis> axes_;
   std::vector<Direction> along_;
@@ -147,7 +148,7 @@ class ChannelCheck {
   std::vector<std::uint8_t> doubted_;
   std::vector<ChannelNews> news_;
 
-  // Of the present window.
+  // These members describe the present window.
   Eigen::MatrixXd window_read_, motion_;  ///< in the order of time; motion of the model
   Eigen::MatrixXd window_expected_;       ///< motion_ with the usual law
   std::vector<Seen> seen_;

@@ -46,7 +46,7 @@ class GapMonitor {
   const std::vector<ChannelNews>& channel_news() const { return channel_news_; }
   /// Returns true while a channel seems to misread and is not in doubt yet: windows that end now
   /// may be wrong.
-  bool suspects() const { return check_.suspects(); }
+  bool has_candidate() const { return check_.has_candidate(); }
   /// Returns by axis: 1 if its channel is in doubt. Such a channel does not count in the gap.
   const std::vector<std::uint8_t>& doubted() const { return check_.doubted(); }
 

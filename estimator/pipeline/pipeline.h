@@ -35,7 +35,7 @@ struct PipelineCounters {
 struct PipelineResult {
   /// A calibrated instant. It comes before the estimates that it completes.
   const SampleSet* instant = nullptr;
-  /// The same without the axes of leave_out().
+  /// It is the instant without the axes of leave_out().
   const SampleSet* trusted = nullptr;
   /// The estimate of the main window that ends now.
   const WindowEstimate* estimate = nullptr;

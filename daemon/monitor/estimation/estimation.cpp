@@ -115,7 +115,9 @@ void Estimation::begin_gap() {
   gap_.reset();
   const bool simulated = simulated_size_problem(config_.pipeline.structure).empty();
   if (!config_.gap && !(config_.watch && simulated)) return;
-  const GapSettings settings = config_.gap.value_or(GapSettings{});
+  GapSettings settings = config_.gap.value_or(GapSettings{});
+  if (!config_.gap)
+    settings.options.learn_s = std::min(settings.options.learn_s, config_.watch->options.learn_s);
   gap_.emplace(config_.pipeline, pipeline_.axes(), settings.options, settings.model);
 }
 
@@ -198,7 +200,7 @@ bool Estimation::speaks_of_building() const {
   if (!gap_) return true;
   const auto& doubted = gap_->doubted();
   const bool without = std::find(doubted.begin(), doubted.end(), 1) != doubted.end();
-  return !gap_->suspects() && !(without && pipeline_.parameters().grouped());
+  return !gap_->has_candidate() && !(without && pipeline_.parameters().grouped());
 }
 
 void Estimation::watch(const estimator::WindowEstimate& estimate) {

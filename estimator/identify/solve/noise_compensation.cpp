@@ -45,8 +45,8 @@ namespace {
 /// intervals hold for buildings that the model does not describe (docs/accuracy.md). The equations
 /// of groups are taken together, which overstates the ratio.
 constexpr double kAbsorbed = 1.5, kAbsorbedOfGroups = 1;
-/// The same ratio for a misfit that is new. Few unknowns can absorb most of a single wrong signal
-/// (tests/estimator/pipeline/honest_errors_test.cpp).
+/// This is the ratio for a misfit that is new. Few unknowns can absorb most of a single wrong
+/// signal (tests/estimator/pipeline/honest_errors_test.cpp).
 constexpr double kAbsorbedAtOnce = 4;
 
 bool is_stiffness(ParameterKind kind) {

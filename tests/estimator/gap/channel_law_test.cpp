@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every law is told from the others, with its number.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
