@@ -26,9 +26,6 @@ constexpr double kTight = 1.0 / 3;  ///< share of the departure that a law may l
 /// Other channels of its direction that must move as ever for a channel that follows no law. A
 /// change of one frame of a few can be near one channel alone.
 constexpr int kWitnesses = 3;
-/// Share of the energy that a law of time of the base may leave. All floors follow it once their
-/// earlier motion has died away. A change of the building is similar, but leaves more.
-constexpr double kOfTime = 0.12;
 /// Consecutive seconds until a doubt is raised: with a law, and without one. A change of the
 /// building reaches the other channels within its periods.
 constexpr int kConfirm_s = 3, kConfirmUnlike_s = 5;
@@ -38,6 +35,7 @@ constexpr int kFinal_s = 30;
 constexpr int kClear_s = 30;  ///< consecutive seconds until it is cleared
 /// A base channel that shows this share of the least energy that it ever had beside the floors'.
 constexpr double kDead = 0.04;
+constexpr double kMoves = 0.25;  ///< the same share, above which it moves
 /// Motions of the model, of one direction, that correct what the model lacks at a channel.
 constexpr std::size_t kMostMotions = 8;
 constexpr double kRidge = 1e-6;  ///< of the diagonal: motions of few modes are nearly dependent
@@ -250,26 +248,29 @@ double ChannelCheck::departure(const std::vector<int>& axes) const {
   return motion > 0 ? std::sqrt(beyond / motion) : 0;
 }
 
-/// Returns base channels that do not move although the floors do.
+/// Returns base channels that do not move although the floors and another base channel do. If none
+/// of the base moves, the wind may move the floors.
 std::vector<ChannelCheck::Candidate> ChannelCheck::lost_inputs(
     const std::vector<int>& floors) const {
-  std::vector<Candidate> out;
   double motion = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
     if (const auto column = window_read_.col(static_cast<Eigen::Index>(a));
         axes_[a].story > 0 && axes_[a].horizontal() && column.allFinite())
       motion += column.squaredNorm();
+  std::vector<Candidate> lost;
+  bool moves = false;
   for (std::size_t b = 0; b < axes_.size(); ++b) {
     const auto column = window_read_.col(static_cast<Eigen::Index>(b));
-    if (axes_[b].story != 0 || !axes_[b].horizontal() || !column.allFinite()) continue;
-    const double energy = column.squaredNorm();
-    if (usual_[b].windows >= kLearned && energy < kDead * usual_[b].input_share * motion)
-      out.push_back({static_cast<int>(b),
-                     {ChannelFault::only_noise, 0, -1, energy},
-                     departure(floors),
-                     true});
+    if (axes_[b].story != 0 || usual_[b].windows < kLearned || !column.allFinite()) continue;
+    const double energy = column.squaredNorm(), least = usual_[b].input_share * motion;
+    moves = moves || (energy > kMoves * least && energy > kAbove * noise_[b]);
+    if (energy < kDead * least)
+      lost.push_back({static_cast<int>(b),
+                      {ChannelFault::only_noise, 0, -1, energy},
+                      departure(floors),
+                      true});
   }
-  return out;
+  return moves ? lost : std::vector<Candidate>{};
 }
 
 /// Returns the base channel that repeats a floor's, or whose fault explains how the floors depart.
@@ -279,8 +280,7 @@ std::vector<ChannelCheck::Candidate> ChannelCheck::faulty_input(
   const Eigen::MatrixXd read = window_read_.bottomRows(rows)(Eigen::all, floors);
   const Eigen::MatrixXd expected = window_expected_.bottomRows(rows)(Eigen::all, floors);
   std::vector<Candidate> out;
-  const double before = (read - expected).squaredNorm();
-  double least = before;
+  double least = kExplained * (read - expected).squaredNorm();
   for (std::size_t b = 0; b < axes_.size(); ++b) {
     if (from_input_[b].size() == 0) continue;
     const auto column = window_read_.col(static_cast<Eigen::Index>(b)).tail(rows);
@@ -295,9 +295,7 @@ std::vector<ChannelCheck::Candidate> ChannelCheck::faulty_input(
     const Eigen::MatrixXd part = in_order(from_input_[b]).bottomRows(rows)(Eigen::all, floors);
     if (!part.allFinite()) continue;
     const ChannelLaw law = law_of_input({read - expected + part, part, rate_hz_});
-    const bool of_gain = law.fault == ChannelFault::gain || law.fault == ChannelFault::polarity;
-    const double most = (of_gain ? kExplained : kOfTime) * before;
-    if (law.fault == ChannelFault::unlike || !(law.left < std::min(least, most))) continue;
+    if (law.fault == ChannelFault::unlike || !(law.left < least)) continue;
     least = law.left;
     out = {{static_cast<int>(b), law, departure(floors), true}};
   }

@@ -98,23 +98,19 @@ Column low_passed(const Column& in, double corner_hz, double rate_hz) {
   return out;
 }
 
-/// Adds low-passes of one and two poles. inverse: the readings, not the motion, pass them.
-void add_bandwidths(const Pairs& pairs, double rate_hz, bool inverse, ChannelLaw& best) {
+/// Adds low-passes of one and two poles.
+void add_bandwidths(const Pairs& pairs, double rate_hz, ChannelLaw& best) {
+  const Column &r = pairs.read.front(), &e = pairs.expected.front();
+  const Eigen::Index kept =
+      e.size() - static_cast<Eigen::Index>(kStart * static_cast<double>(e.size()));
+  const double scale = left_of(r, e) / (r - e).tail(kept).squaredNorm();
+  if (!std::isfinite(scale)) return;
   for (double corner_hz = 0.4 * rate_hz; corner_hz > 0.3; corner_hz /= 1.25) {
-    double one = 0, two = 0, whole = 0, kept = 0;
-    for (std::size_t i = 0; i < pairs.read.size(); ++i) {
-      const Column& r = inverse ? pairs.expected[i] : pairs.read[i];
-      const Column& e = inverse ? pairs.read[i] : pairs.expected[i];
-      const auto from = static_cast<Eigen::Index>(kStart * static_cast<double>(e.size()));
-      const Column once = low_passed(e, corner_hz, rate_hz);
-      const Column twice = low_passed(once, corner_hz, rate_hz);
-      one += (r - once).tail(e.size() - from).squaredNorm();
-      two += (r - twice).tail(e.size() - from).squaredNorm();
-      whole += (r - e).squaredNorm();
-      kept += (r - e).tail(e.size() - from).squaredNorm();
-    }
-    if (!(kept > 0)) return;
-    take_better(best, 1, ChannelFault::bandwidth, corner_hz, std::min(one, two) * whole / kept);
+    const Column once = low_passed(e, corner_hz, rate_hz);
+    const Column twice = low_passed(once, corner_hz, rate_hz);
+    const double left =
+        std::min((r - once).tail(kept).squaredNorm(), (r - twice).tail(kept).squaredNorm());
+    take_better(best, 1, ChannelFault::bandwidth, corner_hz, left * scale);
   }
 }
 
@@ -155,10 +151,11 @@ void add_others(const ChannelReadings& of, Eigen::Index axis, ChannelLaw& best) 
 
 /// Returns true if the readings do not follow the motion at all and are small beside it.
 bool is_noise(const Pairs& pairs) {
-  constexpr double kSmall = 0.1;  // of the energy
+  constexpr double kSmall = 0.1, kNothing = 1e-4;  // of the energy
   const double energy = pairs.sum([](const auto& r, const auto&) { return r.squaredNorm(); });
   const double motion = pairs.sum([](const auto&, const auto& e) { return e.squaredNorm(); });
-  return energy < kSmall * motion && gain_law(pairs).left > (1 - kSmall) * energy;
+  return energy < kNothing * motion ||
+         (energy < kSmall * motion && gain_law(pairs).left > (1 - kSmall) * energy);
 }
 
 /// Returns the law if it explains the readings. It must leave little beside both sides: a law that
@@ -178,7 +175,7 @@ ChannelLaw law_of(const ChannelReadings& of, int axis) {
   ChannelLaw best = gain_law(pairs);
   add_times(pairs, of.rate_hz, best);
   add_saturation(pairs, best);
-  add_bandwidths(pairs, of.rate_hz, false, best);
+  add_bandwidths(pairs, of.rate_hz, best);
   add_others(of, axis, best);
   if (is_noise(pairs)) return {ChannelFault::only_noise, 0, -1, before};
   return explained(pairs, best, before);
@@ -193,13 +190,6 @@ ChannelLaw law_of_input(const ChannelReadings& of) {
   const double before = pairs.sum(left_of);
   ChannelLaw best = gain_law(pairs);
   best.value = 1 / best.value;
-  ChannelLaw late = best;
-  add_times(pairs, of.rate_hz, late);
-  if (late.left < best.left) {
-    best = late;
-    best.value = -best.value;
-  }
-  add_bandwidths(pairs, of.rate_hz, true, best);
   return explained(pairs, best, before);
 }
 

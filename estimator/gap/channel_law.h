@@ -50,8 +50,9 @@ struct ChannelReadings {
 /// Returns the law of one axis, docs/equations.md, faults of channels. A law with a further number
 /// must halve what is left, and any law must leave at most a quarter of `read - expected`.
 ChannelLaw law_of(const ChannelReadings& readings, int axis);
-/// Returns the law of an input of a linear model. readings: of all floors, the motion that the
-/// input causes, one column each. It has the input's faults of gain, time and bandwidth.
+/// Returns the law of an input of a linear model: gain, polarity or unlike. readings: of all
+/// floors, the motion that the input causes, one column each. Faults of time are not told: in
+/// motion of one mode, a change of the building is one too.
 ChannelLaw law_of_input(const ChannelReadings& readings);
 
 }  // namespace framewatch::estimator

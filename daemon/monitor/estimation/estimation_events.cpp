@@ -44,7 +44,7 @@ std::string change_words(const estimator::Alarm& alarm, const estimator::Paramet
 constexpr std::int64_t kFirstDoubtId = std::int64_t{1} << 46;
 
 std::string percent(double ratio) {
-  return fmt::format("{:.{}f} %", 100 * ratio, ratio < 0.1 ? 1 : 0);
+  return fmt::format("{:.{}f} %", 100 * ratio, ratio < 1 ? 1 : 0);
 }
 
 std::string fault_words(const estimator::ChannelLaw& law,

@@ -20,6 +20,8 @@ namespace {
 constexpr std::int64_t kFirstStampId = std::int64_t{1} << 44, kClockId = std::int64_t{1} << 45;
 /// Distance from the others' instants, in instants, at which SampleMerger leaves samples out.
 constexpr double kOffGrid = 0.3;
+/// Share of the rate by which a second may have more samples. More are another rate (of_rate).
+constexpr double kMoreOften = 0.2;
 constexpr double kFew = 3, kMost_ratio = 0.01;  ///< samples beyond both are another rate
 
 double seconds_between(std::int64_t from_us, std::int64_t to_us) {
@@ -116,7 +118,8 @@ std::optional<event_t> StampEvents::of_clock(std::size_t axis, double median_us,
   const double offset_s = 1e-6 * (static_cast<double>(c.newest_us) - median_us) - axes_[axis].delay;
   const double steps = offset_s * rate_hz_;
   const bool late = std::abs(offset_s) > lateness_s_;
-  const bool apart = late || std::abs(steps - std::round(steps)) > kOffGrid;
+  const bool at_rate = static_cast<double>(c.came) < (1 + kMoreOften) * rate_hz_;
+  const bool apart = late || (at_rate && std::abs(steps - std::round(steps)) > kOffGrid);
   c.seconds = apart != c.apart ? c.seconds + 1 : 0;
   if (c.seconds < kApart_s) return std::nullopt;
   c.seconds = 0;

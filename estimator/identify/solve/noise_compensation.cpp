@@ -45,9 +45,6 @@ namespace {
 /// intervals hold for buildings that the model does not describe (docs/accuracy.md). The equations
 /// of groups are taken together, which overstates the ratio.
 constexpr double kAbsorbed = 1.5, kAbsorbedOfGroups = 1;
-/// This is the ratio for a misfit that is new. Few unknowns can absorb most of a single wrong
-/// signal (tests/estimator/pipeline/honest_errors_test.cpp).
-constexpr double kAbsorbedAtOnce = 4;
 
 bool is_stiffness(ParameterKind kind) {
   return kind != ParameterKind::frame_damping && kind != ParameterKind::panel_damping;
@@ -136,8 +133,7 @@ double ModelMisfit::error(int unknown, double variance) const {
   double excess = 0;
   for (int f = lowest_floor(unknown); f <= unknown / layout_.own(); ++f)
     excess += excess_[static_cast<std::size_t>(f)];
-  return (layout_.grouped() ? kAbsorbedOfGroups : kAbsorbed) *
-         std::sqrt(excess * std::max(variance, 0.0));
+  return error_of(excess, variance);
 }
 
 double ModelMisfit::new_error(int unknown, double variance) const {
@@ -147,7 +143,12 @@ double ModelMisfit::new_error(int unknown, double variance) const {
     if (learned_[floor] == kLearned && excess_[floor] > usual_limit(floor) * force_[floor])
       excess += excess_[floor];
   }
-  return kAbsorbedAtOnce * std::sqrt(excess * std::max(variance, 0.0));
+  return error_of(excess, variance);
+}
+
+double ModelMisfit::error_of(double excess, double variance) const {
+  return (layout_.grouped() ? kAbsorbedOfGroups : kAbsorbed) *
+         std::sqrt(excess * std::max(variance, 0.0));
 }
 
 }  // namespace framewatch::estimator

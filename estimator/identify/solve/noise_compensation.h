@@ -125,6 +125,7 @@ class ModelMisfit {
   void learn(std::size_t floor, double expected);
   /// Returns the ratio of excess to force beyond which a misfit is new.
   double usual_limit(std::size_t floor) const;
+  double error_of(double excess, double variance) const;
 
   FloorLayout layout_;
   std::vector<double> excess_, force_;  ///< by floor, energies in the units of the rows

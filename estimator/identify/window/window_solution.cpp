@@ -122,9 +122,7 @@ bool WindowSolution::advance_errors(int steps) {
   errors_known_ = true;
   checked_ = influential_.solution();
   for (std::size_t u = 0; u < std_error_.size(); ++u)
-    std_error_[u] =
-        std::hypot(influential_.error(static_cast<int>(u), errors_.std_error()[u]),
-                   misfit_.new_error(static_cast<int>(u), errors_.inverse_diagonal()[u]));
+    std_error_[u] = influential_.error(static_cast<int>(u), errors_.std_error()[u]);
   for (std::size_t u = 0; u < misfit_error_.size(); ++u)
     misfit_error_[u] = misfit_.error(static_cast<int>(u), errors_.inverse_diagonal()[u]);
   return true;
@@ -141,7 +139,8 @@ void WindowSolution::rescale(int unknown, double factor) {
 double WindowSolution::present_error(int unknown) const {
   const auto u = static_cast<std::size_t>(unknown);
   const double moved = std::abs(solver_.solution()[u] - checked_[u]);
-  return std::max(std_error_[u], moved - InfluentialPart::kExplained * std_error_[u]);
+  const double known = std::max(std_error_[u], moved - InfluentialPart::kExplained * std_error_[u]);
+  return std::hypot(known, misfit_.new_error(unknown, errors_.inverse_diagonal()[u]));
 }
 
 double WindowSolution::misfit(int unknown) const {
@@ -183,6 +182,22 @@ bool WindowSolution::place_known(int unknown) const {
   for (int f = 0; f < frames; ++f)
     if (layout_.coefficient(position, f) != 0 && !is_known(floor + 1, f)) return false;
   return true;
+}
+
+/// Returns true if an equation of the unknown is missing, because a motion of its frame, or of any
+/// frame for a panel, is unknown on the floors around.
+bool WindowSolution::equation_lost(int unknown) const {
+  if (layout_.grouped()) return false;
+  const int frames = layout_.frames();
+  const int floor = unknown / layout_.own(), position = unknown % layout_.own();
+  const bool of_frame = position < 2 * frames;
+  const int last = std::min(floor + 2, layout_.floors());
+  for (int level = std::max(floor - 1, 0); level <= last; ++level)
+    for (int f = 0; f < frames; ++f)
+      if ((!of_frame || f == position % frames) &&
+          known_[static_cast<std::size_t>(level * frames + f)] == 0)
+        return true;
+  return false;
 }
 
 /// Returns true if no equation of the floor is left, because a motion around it is unknown.
@@ -238,6 +253,7 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     e.reason[p] = place_known_[i] == 0 || rowless(floor) ? Observability::channel_lost
                   : !warm                                ? Observability::warming_up
                   : published(u)                         ? Observability::observable
+                  : equation_lost(u)                     ? Observability::channel_lost
                                                          : Observability::quiet;
     const bool observable = e.reason[p] == Observability::observable;
     any = any || observable;

@@ -127,6 +127,7 @@ class WindowSolution {
     bool held = false;   ///< hold() applies whatever the Trust
   };
   bool place_known(int unknown) const;
+  bool equation_lost(int unknown) const;
   bool rowless(int floor) const;
   void see(const std::vector<std::uint8_t>& known);
   bool published(int unknown) const;
