@@ -39,8 +39,8 @@ struct ChannelInstant {
 /// Tells a channel that misreads from a building that changed. The running model knows how every
 /// channel of a healthy building should move. A change of the building moves all floors of a
 /// direction differently; a faulty channel departs alone. A faulty channel of the base moves the
-/// whole model, but by a law that no change of a building has. docs/equations.md, faults of
-/// channels.
+/// whole model, but by a law that no change of a building has.
+/// docs/equations.md, faults of channels.
 class ChannelCheck {
  public:
   ChannelCheck(const Structure& structure, const std::vector<SensorAxis>& axes, double rate_hz);
