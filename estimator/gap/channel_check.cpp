@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "estimator/numeric/nan.h"
 #include "estimator/numeric/solve.h"
@@ -94,11 +93,10 @@ const std::vector<ChannelNews>& ChannelCheck::push(Time time, const ChannelInsta
         part.size() > 0)
       part.row(newest_) = instant.from_input.row(i);
   const int rows = static_cast<int>(read_.rows());
+  const bool looks = ends_second();
   newest_ = (newest_ + 1) % rows;
   filled_ = std::min(filled_ + 1, rows);
-  second_ = (second_ + 1) % rows;
-  if (filled_ < rows || second_ % per_second_ != 0) return news_;
-  time_ = time;
+  if (filled_ < rows || !looks) return news_;
   window_read_ = in_order(read_);
   window_expected_ = motion_ = in_order(expected_);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
@@ -108,8 +106,8 @@ const std::vector<ChannelNews>& ChannelCheck::push(Time time, const ChannelInsta
   }
   const bool quiet =
       std::none_of(seen_.begin(), seen_.end(), [](const Seen& seen) { return seen.departs; });
-  if (second_ == 0) learn(quiet);
-  decide(find_candidates());
+  if (newest_ == 0) learn(quiet);
+  decide(time, find_candidates());
   return news_;
 }
 
@@ -358,7 +356,7 @@ double ChannelCheck::least_motion(std::size_t axis, const ChannelLaw& law) const
   return std::max(share * seen_[axis].motion, kAbove * noise_[axis]);
 }
 
-void ChannelCheck::decide(const std::vector<Candidate>& candidates) {
+void ChannelCheck::decide(Time time, const std::vector<Candidate>& candidates) {
   const auto candidate_of = [&](std::size_t a) -> const Candidate* {
     for (const Candidate& s : candidates)
       if (s.axis == static_cast<int>(a)) return &s;
@@ -376,7 +374,7 @@ void ChannelCheck::decide(const std::vector<Candidate>& candidates) {
     const bool against =
         doubt.raised ? known && law == nullptr && !seen_[a].departs : law != nullptr;
     doubt.seconds = against ? doubt.seconds + 1 : 0;
-    ChannelNews news{static_cast<int>(a), AlarmState::changed, time_, doubt.since, {}, 0, others};
+    ChannelNews news{static_cast<int>(a), AlarmState::changed, time, doubt.since, {}, 0, others};
     if (candidate != nullptr) news.departure = candidate->departure;
     if (doubt.raised) doubt.age = std::min(doubt.age + 1, kFinal_s + 1);
     const bool whole = doubt.age == kWindow_s || doubt.age == kFinal_s;
@@ -384,7 +382,7 @@ void ChannelCheck::decide(const std::vector<Candidate>& candidates) {
                        law->fault != ChannelFault::unlike;
     if (!doubt.raised && candidate != nullptr &&
         doubt.seconds >= (candidate->sure ? kConfirm_s : kConfirmUnlike_s)) {
-      doubt = {true, 0, 0, *law, time_ - std::chrono::seconds(kWindow_s), least_motion(a, *law)};
+      doubt = {true, 0, 0, *law, time - std::chrono::seconds(kWindow_s), least_motion(a, *law)};
       news.state = AlarmState::raised;
       news.since = doubt.since;
     } else if (doubt.raised && doubt.seconds >= kClear_s) {

@@ -49,6 +49,8 @@ class ChannelCheck {
   void restart() { filled_ = 0; }
   /// Forgets everything, because the model is another one.
   void forget();
+  /// Returns true if the next push() looks at a window. It needs the noise then.
+  bool ends_second() const { return (newest_ + 1) % per_second_ == 0; }
   /// Takes one instant. noise_variance: by axis, of what is compared; NaN or 0 if unknown. Returns
   /// the news of this instant, at most once a second, valid until the next call.
   const std::vector<ChannelNews>& push(Time time, const ChannelInstant& instant,
@@ -62,10 +64,9 @@ class ChannelCheck {
   const std::vector<std::uint8_t>& doubted() const { return doubted_; }
 
   void archive(auto& a) {
-    a(read_, expected_, from_input_, usual_, doubts_, time_);
+    a(read_, expected_, from_input_, usual_, doubts_);
     a.within(newest_, 0, static_cast<double>(read_.rows() - 1));
     a.within(filled_, 0, static_cast<double>(read_.rows()));
-    a.within(second_, 0, a.kMaxCount);
     a.each_within(doubted_, 0, 1);
   }
 
@@ -131,7 +132,7 @@ class ChannelCheck {
   double departure(const std::vector<int>& axes) const;
   int witnesses(int axis) const;
   double least_motion(std::size_t axis, const ChannelLaw& law) const;
-  void decide(const std::vector<Candidate>& candidates);
+  void decide(Time time, const std::vector<Candidate>& candidates);
 
   std::vector<SensorAxis> axes_;
   std::vector<Direction> along_;
@@ -141,8 +142,6 @@ class ChannelCheck {
   /// By input axis: the part of expected_ that it causes; NaN for the others.
   std::vector<Eigen::MatrixXd> from_input_;
   int newest_ = 0, filled_ = 0;
-  int second_ = 0;  ///< instants since the start
-  Time time_{};
   std::vector<Usual> usual_;
   std::vector<Doubt> doubts_;
   std::vector<std::uint8_t> doubted_;

@@ -266,7 +266,7 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   if (c.settled_s < kCheckFrom * c.running.settle_s()) return nullptr;
   const bool settled = c.settled_s >= c.running.settle_s();
   compare(c, settled);
-  if (c.meter.ends_second() || !settled) noise_variances(c, noise_density);
+  if (settled ? c.meter.ends_second() : check_.ends_second()) noise_variances(c, noise_density);
   channel_news_ = check_.push(set.time - c.delay, {read_, expected_, from_input_, inputs_.used},
                               noise_variance_);
   if (!settled) return nullptr;
