@@ -11,6 +11,8 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr int kWindow_s = 5;
+/// Windows of readings that are kept: the base's cause the motion of the last one.
+constexpr int kKept = 4;
 constexpr int kLearned = 3;    ///< windows without overlap before an axis is judged: 15 s
 constexpr int kForgets = 24;   ///< windows after which older ones fade from the usual law
 constexpr double kAbove = 25;  ///< energy of the motion over the noise that makes it judged
@@ -28,9 +30,12 @@ constexpr int kWitnesses = 3;
 /// Consecutive seconds until a doubt is raised: with a law, and without one. A change of the
 /// building reaches the other channels within its periods.
 constexpr int kConfirm_s = 3, kConfirmUnlike_s = 5;
+/// Share of the departure's energy that a law of the base may leave. In motion of few modes, a loss
+/// of stiffness leaves a fifth beside a delay.
+constexpr double kOfInput = 0.15;
 constexpr int kLeast_s = 2;  ///< of readings that show a law
-/// Seconds after which the law of a doubt is final: the motion before the fault has died away.
-constexpr int kFinal_s = 30;
+/// Seconds after which the law of a doubt is final: the beginning of the fault is still kept.
+constexpr int kFinal_s = 12;
 constexpr int kClear_s = 30;  ///< consecutive seconds until it is cleared
 /// A base channel that shows this share of the least energy that it ever had beside the floors'.
 constexpr double kDead = 0.04;
@@ -65,10 +70,8 @@ ChannelCheck::ChannelCheck(const Structure& structure, const std::vector<SensorA
     usual.forget();
   }
   const auto columns = static_cast<Eigen::Index>(axes.size());
-  read_.setConstant(kWindow_s * per_second_, columns, kNaN);
-  expected_ = window_read_ = window_expected_ = read_;
-  for (const SensorAxis& axis : axes)
-    from_input_.push_back(axis.story == 0 && axis.horizontal() ? read_ : Eigen::MatrixXd());
+  expected_.setConstant(kWindow_s * per_second_, columns, kNaN);
+  read_.setConstant(kKept * expected_.rows(), columns, kNaN);
   news_.reserve(axes.size());
 }
 
@@ -81,41 +84,36 @@ void ChannelCheck::forget() {
 const std::vector<ChannelNews>& ChannelCheck::push(Time time, const ChannelInstant& instant,
                                                    const std::vector<double>& noise_variance) {
   news_.clear();
+  const Eigen::Index rows = expected_.rows();
   for (Eigen::Index a = 0; a < read_.cols(); ++a) {
     read_(newest_, a) = instant.read[static_cast<std::size_t>(a)];
-    expected_(newest_, a) = instant.expected[static_cast<std::size_t>(a)];
+    expected_(newest_ % rows, a) = instant.expected[static_cast<std::size_t>(a)];
   }
-  for (Eigen::MatrixXd& part : from_input_)
-    if (part.size() > 0) part.row(newest_).setConstant(kNaN);
-  for (Eigen::Index i = 0; i < instant.from_input.rows(); ++i)
-    if (Eigen::MatrixXd& part =
-            from_input_[static_cast<std::size_t>(instant.inputs[static_cast<std::size_t>(i)])];
-        part.size() > 0)
-      part.row(newest_) = instant.from_input.row(i);
-  const int rows = static_cast<int>(read_.rows());
   const bool looks = ends_second();
-  newest_ = (newest_ + 1) % rows;
-  filled_ = std::min(filled_ + 1, rows);
+  newest_ = (newest_ + 1) % static_cast<int>(read_.rows());
+  filled_ = std::min(filled_ + 1, static_cast<int>(read_.rows()));
   if (filled_ < rows || !looks) return news_;
-  window_read_ = in_order(read_);
-  window_expected_ = motion_ = in_order(expected_);
+  window_read_ = newest(read_, rows);
+  window_expected_ = motion_ = newest(expected_, rows);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    noise_[a] = std::isfinite(noise_variance[a]) ? rows * noise_variance[a] : 0;
+    noise_[a] =
+        std::isfinite(noise_variance[a]) ? static_cast<double>(rows) * noise_variance[a] : 0;
     correct(a);
     seen_[a] = look_at(a, noise_[a]);
   }
   const bool quiet =
       std::none_of(seen_.begin(), seen_.end(), [](const Seen& seen) { return seen.departs; });
-  if (newest_ == 0) learn(quiet);
-  decide(time, find_candidates());
+  if (newest_ % rows == 0) learn(quiet);
+  decide(time, find_candidates(instant.base));
   return news_;
 }
 
-/// Returns a ring of instants in the order of time.
-Eigen::MatrixXd ChannelCheck::in_order(const Eigen::MatrixXd& ring) const {
-  Eigen::MatrixXd out(ring.rows(), ring.cols());
-  out.topRows(ring.rows() - newest_) = ring.bottomRows(ring.rows() - newest_);
-  out.bottomRows(newest_) = ring.topRows(newest_);
+/// Returns the newest instants of a ring in the order of time.
+Eigen::MatrixXd ChannelCheck::newest(const Eigen::MatrixXd& ring, Eigen::Index rows) const {
+  Eigen::MatrixXd out(rows, ring.cols());
+  const Eigen::Index end = newest_ % ring.rows();
+  for (Eigen::Index i = 0; i < rows; ++i)
+    out.row(i) = ring.row((end - rows + i + ring.rows()) % ring.rows());
   return out;
 }
 
@@ -132,7 +130,7 @@ void ChannelCheck::Usual::forget() {
 void ChannelCheck::correct(std::size_t axis) {
   const Usual& usual = usual_[axis];
   if (usual.from.empty() || usual.windows < kLearned) return;
-  const Eigen::Index last = read_.rows() - 1;
+  const Eigen::Index last = motion_.rows() - 1;
   const auto own = static_cast<Eigen::Index>(axis);
   for (Eigen::Index i = 0; i <= last; ++i) {
     const Eigen::Index next = std::min(i + 1, last), before = std::max<Eigen::Index>(i - 1, 0);
@@ -217,22 +215,38 @@ void ChannelCheck::learn(bool quiet) {
   }
 }
 
-/// Returns the length of the end of the window in which the axes depart second by second.
+/// Returns the length of the end of the window in which the axes depart: the change of level that
+/// explains most of the logarithm of what they leave, by tenths of a second.
 Eigen::Index ChannelCheck::rows_since_onset(const std::vector<int>& axes) const {
-  int seconds = 0;
-  const auto departs = [&](int second) {
-    return std::any_of(axes.begin(), axes.end(), [&](int axis) {
-      const auto rows = Eigen::seqN(second * per_second_, per_second_);
-      const Seen& seen = seen_[static_cast<std::size_t>(axis)];
-      const double motion = window_expected_(rows, axis).squaredNorm();
-      const double left = (window_read_(rows, axis) - window_expected_(rows, axis)).squaredNorm();
-      const double noise = noise_[static_cast<std::size_t>(axis)] / kWindow_s;
-      const double share = (seen.usual - noise_[static_cast<std::size_t>(axis)]) / seen.motion;
-      return std::log(left / (share * motion + noise)) > kAlike * seen.departure;
-    });
-  };
-  while (seconds < kWindow_s && departs(kWindow_s - 1 - seconds)) ++seconds;
-  return Eigen::Index{std::max(seconds, kLeast_s)} * per_second_;
+  const Eigen::Index step = std::max(1, per_second_ / 10), blocks = motion_.rows() / step;
+  double usual = 0;
+  for (const int a : axes)
+    usual += seen_[static_cast<std::size_t>(a)].usual / static_cast<double>(blocks);
+  Eigen::VectorXd above(blocks);  // newest first
+  for (Eigen::Index k = 0; k < blocks; ++k) {
+    const auto rows = Eigen::seqN(motion_.rows() - (k + 1) * step, step);
+    above[k] =
+        std::log1p((window_read_(rows, axes) - window_expected_(rows, axes)).squaredNorm() / usual);
+  }
+  above.array() -= above.mean();
+  double sum = 0, most = 0;
+  Eigen::Index since = blocks * step;
+  for (Eigen::Index k = 1; k < blocks; ++k) {
+    sum += above[k - 1];
+    const double explained = sum * sum / static_cast<double>(k * (blocks - k));
+    if (sum > 0 && explained > most) most = explained, since = k * step;
+  }
+  return since;
+}
+
+/// Counts the instants since floors depart.
+void ChannelCheck::follow_departure(bool departs, const std::vector<int>& floors) {
+  if (!departs)
+    departing_ = 0;
+  else
+    departing_ = std::min(
+        departing_ == 0 ? static_cast<int>(rows_since_onset(floors)) : departing_ + per_second_,
+        filled_);
 }
 
 /// Returns the rms of what the axes leave beyond the usual, over that of their motion.
@@ -250,17 +264,21 @@ double ChannelCheck::departure(const std::vector<int>& axes) const {
 /// of the base moves, the wind may move the floors.
 std::vector<ChannelCheck::Candidate> ChannelCheck::lost_inputs(
     const std::vector<int>& floors) const {
-  double motion = 0;
-  for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (const auto column = window_read_.col(static_cast<Eigen::Index>(a));
-        axes_[a].story > 0 && axes_[a].horizontal() && column.allFinite())
-      motion += column.squaredNorm();
+  const auto motion_along = [&](Direction along) {
+    double sum = 0;
+    for (std::size_t a = 0; a < axes_.size(); ++a)
+      if (const auto column = window_read_.col(static_cast<Eigen::Index>(a));
+          axes_[a].story > 0 && axes_[a].horizontal() && along_[a] == along && column.allFinite())
+        sum += column.squaredNorm();
+    return sum;
+  };
   std::vector<Candidate> lost;
   bool moves = false;
   for (std::size_t b = 0; b < axes_.size(); ++b) {
     const auto column = window_read_.col(static_cast<Eigen::Index>(b));
     if (axes_[b].story != 0 || usual_[b].windows < kLearned || !column.allFinite()) continue;
-    const double energy = column.squaredNorm(), least = usual_[b].input_share * motion;
+    const double energy = column.squaredNorm();
+    const double least = usual_[b].input_share * motion_along(along_[b]);
     moves = moves || (energy > kMoves * least && energy > kAbove * noise_[b]);
     if (energy < kDead * least)
       lost.push_back({static_cast<int>(b),
@@ -271,36 +289,64 @@ std::vector<ChannelCheck::Candidate> ChannelCheck::lost_inputs(
   return moves ? lost : std::vector<Candidate>{};
 }
 
-/// Returns the base channel that repeats a floor's, or whose fault explains how the floors depart.
-std::vector<ChannelCheck::Candidate> ChannelCheck::faulty_input(
-    const std::vector<int>& floors) const {
-  const Eigen::Index rows = rows_since_onset(floors);
-  const Eigen::MatrixXd read = window_read_.bottomRows(rows)(Eigen::all, floors);
-  const Eigen::MatrixXd expected = window_expected_.bottomRows(rows)(Eigen::all, floors);
-  std::vector<Candidate> out;
-  double least = kExplained * (read - expected).squaredNorm();
+/// Returns a base channel that repeats a floor's.
+std::vector<ChannelCheck::Candidate> ChannelCheck::repeating_input() const {
+  const auto rows = Eigen::lastN(kLeast_s * per_second_);
   for (std::size_t b = 0; b < axes_.size(); ++b) {
-    if (from_input_[b].size() == 0) continue;
-    const auto column = window_read_.col(static_cast<Eigen::Index>(b)).tail(rows);
-    for (const int other : floors) {
-      const double left = (column - window_read_.col(other).tail(rows)).squaredNorm();
-      if (left < kMatters * kMatters * column.squaredNorm())
+    if (axes_[b].story != 0) continue;
+    const Eigen::VectorXd own = window_read_(rows, static_cast<Eigen::Index>(b));
+    for (std::size_t c = 0; c < axes_.size(); ++c) {
+      if (axes_[c].story == 0) continue;
+      const double left = (own - window_read_(rows, static_cast<Eigen::Index>(c))).squaredNorm();
+      if (left < kMatters * kMatters * own.squaredNorm())
         return {{static_cast<int>(b),
-                 {ChannelFault::repeats, 0, other, left},
-                 departure(floors),
+                 {ChannelFault::repeats, 0, static_cast<int>(c), left},
+                 departure({static_cast<int>(c)}),
                  true}};
     }
-    const Eigen::MatrixXd part = in_order(from_input_[b]).bottomRows(rows)(Eigen::all, floors);
-    if (!part.allFinite()) continue;
-    const ChannelLaw law = law_of_input({read - expected + part, part, rate_hz_});
-    if (law.fault == ChannelFault::unlike || !(law.left < least)) continue;
-    least = law.left;
-    out = {{static_cast<int>(b), law, departure(floors), true}};
+  }
+  return {};
+}
+
+/// Returns the base channel, and the channel exchanged with it if so, whose fault explains how the
+/// floors depart: with the reading that it should have had, the model moves as they do. A departure
+/// that nothing explains while its beginning is kept has another cause.
+std::vector<ChannelCheck::Candidate> ChannelCheck::faulty_input(const std::vector<int>& floors,
+                                                                const std::vector<int>& apart,
+                                                                BaseResponse& base) const {
+  if (departing_ < kLeast_s * per_second_ || departing_ == read_.rows()) return {};
+  const Eigen::MatrixXd read = newest(read_, departing_);
+  const Eigen::Index rows = std::min(read.rows(), motion_.rows());
+  const Eigen::MatrixXd departs = (window_read_ - window_expected_).bottomRows(rows);
+  const double all = departs(Eigen::all, floors).squaredNorm();
+  ChannelLaw best{ChannelFault::unlike, 0, -1, kOfInput * all};
+  Eigen::Index doubted = -1;
+  const auto take = [&](Eigen::Index axis, const ChannelLaw& law) {
+    if (law.fault != ChannelFault::unlike && law.left < best.left) best = law, doubted = axis;
+  };
+  for (const Eigen::Index b : base.axes()) {
+    const Eigen::VectorXd own = read.col(b);
+    if (!own.allFinite()) continue;
+    const Eigen::MatrixXd caused = base.of(b, own).bottomRows(rows)(Eigen::all, floors);
+    take(b, law_of_input({caused, caused + departs(Eigen::all, floors), rate_hz_}));
+    for (const int c : apart) {
+      if (along_[static_cast<std::size_t>(c)] != along_[static_cast<std::size_t>(b)]) continue;
+      const Eigen::MatrixXd change = base.of(b, read.col(c) - own).bottomRows(rows);
+      Eigen::MatrixXd left = departs - change;
+      left.col(c) = own.tail(rows) - window_expected_.col(c).tail(rows) - change.col(c);
+      take(b, {ChannelFault::exchanged, 0, c, left(Eigen::all, floors).squaredNorm()});
+    }
+  }
+  if (doubted < 0) return {};
+  std::vector<Candidate> out{{static_cast<int>(doubted), best, departure(floors), true}};
+  if (best.fault == ChannelFault::exchanged) {
+    out.push_back({best.other, best, departure({best.other}), true});
+    out.back().law.other = static_cast<int>(doubted);
   }
   return out;
 }
 
-std::vector<ChannelCheck::Candidate> ChannelCheck::find_candidates() const {
+std::vector<ChannelCheck::Candidate> ChannelCheck::find_candidates(BaseResponse* base) {
   double most = 0;
   std::vector<int> judged, apart;
   bool departs = false;
@@ -310,6 +356,7 @@ std::vector<ChannelCheck::Candidate> ChannelCheck::find_candidates() const {
     departs = departs || seen_[a].departs;
     most = std::max(most, seen_[a].departure);
   }
+  follow_departure(departs, judged);
   if (const std::vector<Candidate> lost = lost_inputs(judged); !lost.empty()) return lost;
   if (!departs) return {};
   for (const int a : judged)
@@ -319,12 +366,17 @@ std::vector<ChannelCheck::Candidate> ChannelCheck::find_candidates() const {
                      (apart.size() == 1 || std::all_of(apart.begin(), apart.end(), [&](int a) {
                         return !group.empty() && axes_[static_cast<std::size_t>(a)].group == group;
                       }));
-  if (!alone)
-    if (const std::vector<Candidate> base = faulty_input(judged); !base.empty()) return base;
-  if (apart.size() > kMostAtOnce) return {};
+  if (!alone) {
+    std::vector<Candidate> input;
+    if (base != nullptr) input = faulty_input(judged, apart, *base);
+    if (input.empty() && !base_doubted()) input = repeating_input();
+    if (!input.empty()) return input;
+  }
+  if (apart.size() > kMostAtOnce || base_doubted()) return {};
   std::vector<Candidate> out;
   for (const int a : apart) {
-    const Eigen::Index rows = rows_since_onset({a});
+    const Eigen::Index rows =
+        std::max<Eigen::Index>(rows_since_onset({a}), Eigen::Index{kLeast_s} * per_second_);
     const Eigen::MatrixXd read = window_read_.bottomRows(rows);
     const Eigen::MatrixXd expected = window_expected_.bottomRows(rows);
     const ChannelLaw law = law_of({read, expected, rate_hz_}, a);
@@ -338,6 +390,13 @@ std::vector<ChannelCheck::Candidate> ChannelCheck::find_candidates() const {
     out.push_back({a, law, departure({a}), tight});
   }
   return out;
+}
+
+/// Returns true if the motion that the model expects of the floors has a wrong cause.
+bool ChannelCheck::base_doubted() const {
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    if (axes_[a].story == 0 && doubted_[a] != 0) return true;
+  return false;
 }
 
 /// Returns the number of other channels of its direction that move as ever.
@@ -362,6 +421,8 @@ void ChannelCheck::decide(Time time, const std::vector<Candidate>& candidates) {
       if (s.axis == static_cast<int>(a)) return &s;
     return nullptr;
   };
+  const bool some_judged =
+      std::any_of(seen_.begin(), seen_.end(), [](const Seen& seen) { return seen.judged; });
   double others = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
     if (seen_[a].judged && candidate_of(a) == nullptr && doubted_[a] == 0)
@@ -370,9 +431,9 @@ void ChannelCheck::decide(Time time, const std::vector<Candidate>& candidates) {
     Doubt& doubt = doubts_[a];
     const Candidate* const candidate = candidate_of(a);
     const ChannelLaw* law = candidate == nullptr ? nullptr : &candidate->law;
-    const bool known = axes_[a].story == 0 || seen_[a].motion >= doubt.motion;
-    const bool against =
-        doubt.raised ? known && law == nullptr && !seen_[a].departs : law != nullptr;
+    const bool fits = axes_[a].story == 0 ? departing_ == 0 && some_judged
+                                          : seen_[a].motion >= doubt.motion && !seen_[a].departs;
+    const bool against = doubt.raised ? law == nullptr && fits : law != nullptr;
     doubt.seconds = against ? doubt.seconds + 1 : 0;
     ChannelNews news{static_cast<int>(a), AlarmState::changed, time, doubt.since, {}, 0, others};
     if (candidate != nullptr) news.departure = candidate->departure;

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "estimator/gap/base_response.h"
 #include "estimator/gap/channel_law.h"
 #include "estimator/motion/sample.h"
 #include "estimator/structure/sensors.h"
@@ -30,10 +31,7 @@ struct ChannelNews {
 struct ChannelInstant {
   const std::vector<double>& read;      ///< by axis
   const std::vector<double>& expected;  ///< by axis; NaN for the base
-  /// The part of `expected` that each axis in `inputs` causes: inputs x axes; without rows if the
-  /// model is not linear.
-  const Eigen::MatrixXd& from_input;
-  const std::vector<Eigen::Index>& inputs;  ///< axes that drive the model
+  BaseResponse* base;                   ///< of the same model; null if it is not linear
 };
 
 /// Tells a channel that misreads from a building that changed. The running model knows how every
@@ -46,7 +44,7 @@ class ChannelCheck {
   ChannelCheck(const Structure& structure, const std::vector<SensorAxis>& axes, double rate_hz);
 
   /// Forgets the window, after an interruption.
-  void restart() { filled_ = 0; }
+  void restart() { filled_ = departing_ = 0; }
   /// Forgets everything, because the model is another one.
   void forget();
   /// Returns true if the next push() looks at a window. It needs the noise then.
@@ -62,11 +60,13 @@ class ChannelCheck {
   }
   /// Returns by axis: 1 if the channel is in doubt.
   const std::vector<std::uint8_t>& doubted() const { return doubted_; }
+  /// Returns true if a channel of the base is in doubt: the model moves the floors wrongly.
+  bool base_doubted() const;
 
   void archive(auto& a) {
-    a(read_, expected_, from_input_, usual_, doubts_);
+    a(read_, expected_, usual_, doubts_);
     a.within(newest_, 0, static_cast<double>(read_.rows() - 1));
-    a.within(filled_, 0, static_cast<double>(read_.rows()));
+    for (int* rows : {&filled_, &departing_}) a.within(*rows, 0, static_cast<double>(read_.rows()));
     a.each_within(doubted_, 0, 1);
   }
 
@@ -121,14 +121,17 @@ class ChannelCheck {
     bool sure;         ///< its law leaves little
   };
 
-  Eigen::MatrixXd in_order(const Eigen::MatrixXd& ring) const;
+  Eigen::MatrixXd newest(const Eigen::MatrixXd& ring, Eigen::Index rows) const;
   void correct(std::size_t axis);
   Seen look_at(std::size_t axis, double noise_variance) const;
   Eigen::Index rows_since_onset(const std::vector<int>& axes) const;
+  void follow_departure(bool departs, const std::vector<int>& floors);
   void learn(bool quiet);
-  std::vector<Candidate> find_candidates() const;
+  std::vector<Candidate> find_candidates(BaseResponse* base);
   std::vector<Candidate> lost_inputs(const std::vector<int>& floors) const;
-  std::vector<Candidate> faulty_input(const std::vector<int>& floors) const;
+  std::vector<Candidate> repeating_input() const;
+  std::vector<Candidate> faulty_input(const std::vector<int>& floors, const std::vector<int>& apart,
+                                      BaseResponse& base) const;
   double departure(const std::vector<int>& axes) const;
   int witnesses(int axis) const;
   double least_motion(std::size_t axis, const ChannelLaw& law) const;
@@ -138,10 +141,10 @@ class ChannelCheck {
   std::vector<Direction> along_;
   double rate_hz_;
   int per_second_;
-  Eigen::MatrixXd read_, expected_;  ///< ring of instants x axes
-  /// By input axis: the part of expected_ that it causes; NaN for the others.
-  std::vector<Eigen::MatrixXd> from_input_;
-  int newest_ = 0, filled_ = 0;
+  Eigen::MatrixXd read_, expected_;  ///< rings of instants x axes
+  int newest_ = 0;                   ///< place of the next instant in read_
+  int filled_ = 0;                   ///< instants in read_
+  int departing_ = 0;                ///< instants since floors depart; 0: they do not
   std::vector<Usual> usual_;
   std::vector<Doubt> doubts_;
   std::vector<std::uint8_t> doubted_;

@@ -100,17 +100,22 @@ Column low_passed(const Column& in, double corner_hz, double rate_hz) {
 
 /// Adds low-passes of one and two poles.
 void add_bandwidths(const Pairs& pairs, double rate_hz, ChannelLaw& best) {
-  const Column &r = pairs.read.front(), &e = pairs.expected.front();
-  const Eigen::Index kept =
-      e.size() - static_cast<Eigen::Index>(kStart * static_cast<double>(e.size()));
-  const double scale = left_of(r, e) / (r - e).tail(kept).squaredNorm();
+  const Eigen::Index rows = pairs.read.front().size();
+  const Eigen::Index kept = rows - static_cast<Eigen::Index>(kStart * static_cast<double>(rows));
+  const double scale = pairs.sum(left_of) / pairs.sum([&](const Column& r, const Column& e) {
+    return (r - e).tail(kept).squaredNorm();
+  });
   if (!std::isfinite(scale)) return;
   for (double corner_hz = 0.4 * rate_hz; corner_hz > 0.3; corner_hz /= 1.25) {
-    const Column once = low_passed(e, corner_hz, rate_hz);
-    const Column twice = low_passed(once, corner_hz, rate_hz);
-    const double left =
-        std::min((r - once).tail(kept).squaredNorm(), (r - twice).tail(kept).squaredNorm());
-    take_better(best, 1, ChannelFault::bandwidth, corner_hz, left * scale);
+    double once_left = 0, twice_left = 0;
+    for (std::size_t i = 0; i < pairs.read.size(); ++i) {
+      const Column& r = pairs.read[i];
+      const Column once = low_passed(pairs.expected[i], corner_hz, rate_hz);
+      once_left += (r - once).tail(kept).squaredNorm();
+      twice_left += (r - low_passed(once, corner_hz, rate_hz)).tail(kept).squaredNorm();
+    }
+    take_better(best, 1, ChannelFault::bandwidth, corner_hz,
+                std::min(once_left, twice_left) * scale);
   }
 }
 
@@ -189,8 +194,12 @@ ChannelLaw law_of_input(const ChannelReadings& of) {
   }
   const double before = pairs.sum(left_of);
   ChannelLaw best = gain_law(pairs);
-  best.value = 1 / best.value;
-  return explained(pairs, best, before);
+  add_times(pairs, of.rate_hz, best);
+  add_bandwidths(pairs, of.rate_hz, best);
+  ChannelLaw law = explained(pairs, best, before);
+  if (law.fault != ChannelFault::unlike)
+    law.left *= of.expected.squaredNorm() / of.read.squaredNorm();
+  return law;
 }
 
 }  // namespace framewatch::estimator

@@ -50,9 +50,10 @@ struct ChannelReadings {
 /// Returns the law of one axis, docs/equations.md, faults of channels. A law with a further number
 /// must halve what is left, and any law must leave at most a quarter of `read - expected`.
 ChannelLaw law_of(const ChannelReadings& readings, int axis);
-/// Returns the law of an input of a linear model: gain, polarity or unlike. readings: of all
-/// floors, the motion that the input causes, one column each. Faults of time are not told: in
-/// motion of one mode, a change of the building is one too.
+/// Returns the law of an input of a linear model: gain, polarity, late, clock, bandwidth or unlike.
+/// A linear model and these laws commute, so the motion that an input causes shows them like the
+/// input itself. readings.read: by floor, the motion that the input's reading causes; expected: the
+/// motion that the true input must cause. ChannelLaw::left is of `expected`.
 ChannelLaw law_of_input(const ChannelReadings& readings);
 
 }  // namespace framewatch::estimator

@@ -15,8 +15,6 @@ constexpr int kHeld = RunningModel::kDelay + 1;
 /// Share of the settling time from which channels are checked: what remains of the start is then
 /// small beside a fault, and counts as usual.
 constexpr double kCheckFrom = 0.5;
-/// Inputs up to which the response to each of them is known: two directions with two axes each.
-constexpr std::size_t kMostParts = 4;
 
 std::vector<DerivativeTriple> triples(const AxisCorrection& correction, double rate_hz) {
   std::vector<DerivativeTriple> out;
@@ -24,7 +22,7 @@ std::vector<DerivativeTriple> triples(const AxisCorrection& correction, double r
   return out;
 }
 
-std::vector<char> compared(const std::vector<std::vector<std::pair<int, double>>>& seen) {
+std::vector<char> compared(const std::vector<SeenMotion>& seen) {
   std::vector<char> out;
   for (const auto& of_axis : seen) out.push_back(!of_axis.empty());
   return out;
@@ -51,11 +49,8 @@ GapMonitor::Current::Current(const GapMonitor& m, const GapModel& model)
           1e6 / m.rate_hz_ *
           (matched_triple(m.rate_hz_).delay + RunningModel::kDelay + correction.held_back()))),
       held(m.axes_.size() * kHeld, kNaN) {
-  if (!model.effects.empty() || m.inputs_.used.size() > kMostParts)
-    return;  // nonlinear, or too many
-  for (std::size_t i = 0; i + 1 < m.inputs_.used.size(); ++i)
-    parts.emplace_back(m.structure_, m.stories_, model, m.inputs_.inputs, m.rate_hz_,
-                       m.high_pass_hz_, m.late(correction.rest()));
+  if (model.effects.empty())
+    base.emplace(m.structure_, m.stories_, model.theta, m.inputs_, m.seen_, m.rate_hz_);
 }
 
 GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxis>& axes,
@@ -182,39 +177,15 @@ void GapMonitor::hold(Current& c) {
         c.filter.valid(static_cast<int>(a)) ? c.filter.value(static_cast<int>(a)) : kNaN;
 }
 
-void GapMonitor::drive(Current& c, const std::vector<double>& accel) {
-  c.running.push(driven_);
-  for (std::size_t i = 0; i < c.parts.size(); ++i) {
-    const Eigen::Index a = inputs_.used[i];
-    c.parts[i].push(inputs_.from_axes.col(a) * accel[static_cast<std::size_t>(a)]);
-  }
-}
-
 void GapMonitor::compare(Current& c, bool settled) {
   const int then = (c.newest + RunningModel::kDelay) % kHeld;
-  const bool separable = c.parts.size() + 1 == inputs_.used.size();
-  const auto last = static_cast<Eigen::Index>(c.parts.size());
-  from_input_.setConstant(separable ? last + 1 : 0, static_cast<Eigen::Index>(axes_.size()), 0);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     read_[a] = c.held[static_cast<std::size_t>(then) * axes_.size() + a];
     expected_[a] = seen_[a].empty() ? kNaN : 0;
     for (const auto& [dof, weight] : seen_[a]) expected_[a] += weight * c.running.accel_abs(dof);
-    if (separable) {
-      const auto column = static_cast<Eigen::Index>(a);
-      for (Eigen::Index i = 0; i < last; ++i)
-        for (const auto& [dof, weight] : seen_[a])
-          from_input_(i, column) += weight * c.parts[static_cast<std::size_t>(i)].accel_abs(dof);
-      from_input_(last, column) = expected_[a] - from_input_.col(column).head(last).sum();
-    }
     if (settled && std::isfinite(read_[a]) && !seen_[a].empty() && doubted()[a] == 0)
       c.meter.add(a, read_[a], expected_[a]);
   }
-}
-
-bool GapMonitor::base_doubted() const {
-  for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (axes_[a].story == 0 && doubted()[a] != 0) return true;
-  return false;
 }
 
 void GapMonitor::noise_variances(const Current& c, const std::vector<double>& noise_density) {
@@ -257,22 +228,21 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   }
   if (c.settled_s == 0) {
     c.running.restart();
-    for (RunningModel& part : c.parts) part.restart();
     c.meter.restart();
     check_.restart();
   }
-  drive(c, accel);
+  c.running.push(driven_);
   c.settled_s += 1 / rate_hz_;
   if (c.settled_s < kCheckFrom * c.running.settle_s()) return nullptr;
   const bool settled = c.settled_s >= c.running.settle_s();
   compare(c, settled);
   if (settled ? c.meter.ends_second() : check_.ends_second()) noise_variances(c, noise_density);
-  channel_news_ = check_.push(set.time - c.delay, {read_, expected_, from_input_, inputs_.used},
+  channel_news_ = check_.push(set.time - c.delay, {read_, expected_, c.base ? &*c.base : nullptr},
                               noise_variance_);
   if (!settled) return nullptr;
   if (!channel_news_.empty()) c.meter.restart();
   if (!c.meter.close(set.time - c.delay, noise_variance_)) return nullptr;
-  if (base_doubted()) return &c.meter.gap();
+  if (check_.base_doubted()) return &c.meter.gap();
   news_ = alarm_.push(c.meter.gap());
   if (news_ == nullptr) return &c.meter.gap();
   const GapNews before = named_;

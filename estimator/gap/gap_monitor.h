@@ -2,10 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "estimator/gap/axis_correction.h"
+#include "estimator/gap/base_response.h"
 #include "estimator/gap/channel_check.h"
 #include "estimator/gap/gap.h"
 #include "estimator/gap/measured_inputs.h"
@@ -76,7 +76,7 @@ class GapMonitor {
     AxisCorrection correction;
     DriftControlledIntegrator filter;
     RunningModel running;
-    std::vector<RunningModel> parts;  ///< driven by one of inputs_.used alone, all but the last one
+    std::optional<BaseResponse> base;  ///< if the model is linear
     NoisePath noise;
     GapMeter meter;
     SensorClock::duration delay;  ///< of the compared instant
@@ -87,7 +87,6 @@ class GapMonitor {
 
     void archive(auto& a) {
       a(correction, filter, running, noise, meter, held);
-      if (a.since(18)) a(parts);
       a.within(newest, 0, RunningModel::kDelay);  // of kDelay + 1 instants
       a.finite(settled_s);
       a.within(expected_index, -1, a.kMaxCount);
@@ -99,9 +98,7 @@ class GapMonitor {
   /// Recomputes the inputs from the present axes and restarts the running model.
   void take_inputs();
   void hold(Current& c);
-  void drive(Current& c, const std::vector<double>& accel);
   void compare(Current& c, bool settled);
-  bool base_doubted() const;
   void noise_variances(const Current& c, const std::vector<double>& noise_density);
   /// Adds the parameter that has changed most significantly to the news.
   void name_place(GapNews& news) const;
@@ -117,7 +114,7 @@ class GapMonitor {
   DrivingAxes driving_;
   MeasuredInputs inputs_;  ///< of the present axes
   /// Motion that each axis above the base measures along x or y: degrees of freedom with weights.
-  std::vector<std::vector<std::pair<int, double>>> seen_;
+  std::vector<SeenMotion> seen_;
   double rate_hz_, high_pass_hz_;
   GapOptions options_;
   ModelLearner learner_;
@@ -132,7 +129,6 @@ class GapMonitor {
   ChannelCheck check_;
   std::vector<ChannelNews> channel_news_;
   std::vector<double> read_, expected_;  ///< by axis: what check_ compares now
-  Eigen::MatrixXd from_input_;           ///< the part of expected_ from each of inputs_.used
   Eigen::VectorXd driven_;               ///< the present inputs
   std::vector<double> noise_variance_;
   const GapNews* news_ = nullptr;

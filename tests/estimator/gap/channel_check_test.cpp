@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/gap/base_response.h"
 #include "estimator/gap/gap_monitor.h"
+#include "estimator/gap/measured_inputs.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/simulate/random.h"
 #include "estimator/state/archive.h"
@@ -116,6 +118,40 @@ TEST_F(FaultyChannel, OfTheBaseIsNamedAlthoughTheWholeModelMovesWrongly) {
   EXPECT_NEAR(gain.value, 1.2, 0.02);
   const ChannelLaw dead = expect_named(run(with([&](auto rows) { rows.col(base) *= 1e-6; })), base);
   EXPECT_EQ(dead.fault, ChannelFault::only_noise);
+}
+
+TEST_F(FaultyChannel, OfTheBaseIsNamedByFaultsOfTime) {
+  const int base = axis(0, Direction::x);
+  const ChannelLaw late = expect_named(run(with([&](auto rows) {
+                                         for (Eigen::Index i = rows.rows() - 1; i > 3; --i)
+                                           rows(i, base) = rows(i - 3, base);
+                                       })),
+                                       base);
+  EXPECT_EQ(late.fault, ChannelFault::late);
+  EXPECT_NEAR(late.value, 0.03, 0.002);
+  const ChannelLaw slow = expect_named(run(with([&](auto rows) {
+                                         for (Eigen::Index i = 1; i < rows.rows(); ++i)
+                                           rows(i, base) =
+                                               0.8 * rows(i - 1, base) + 0.2 * rows(i, base);
+                                       })),
+                                       base);
+  EXPECT_EQ(slow.fault, ChannelFault::bandwidth);
+}
+
+TEST_F(FaultyChannel, ThatIsExchangedWithTheBaseNamesBoth) {
+  const int base = axis(0, Direction::x), roof = axis(5, Direction::x);
+  const std::vector<Named> named = run(with([&](auto rows) {
+    const Eigen::VectorXd kept = rows.col(base);
+    rows.col(base) = rows.col(roof);
+    rows.col(roof) = kept;
+  }));
+  ASSERT_GE(named.size(), 2u);
+  EXPECT_LE(named[1].after_s, kSoon_s);
+  EXPECT_NE(named[0].axis, named[1].axis);
+  for (const Named& n : named) {
+    EXPECT_EQ(n.law.fault, ChannelFault::exchanged);
+    EXPECT_EQ(n.axis + n.law.other, base + roof);
+  }
 }
 
 TEST_F(FaultyChannel, ThatIsExchangedNamesBoth) {

@@ -93,12 +93,21 @@ TEST(ChannelLaw, NamesNoiseAndWhatItDoesNotKnow) {
             ChannelFault::unlike);
 }
 
-TEST(ChannelLaw, OfAnInputIsTheInverseOfWhatTheFloorsShow) {
+TEST(ChannelLaw, OfAnInputIsThatOfTheMotionWhichItCauses) {
   ChannelReadings of = readings([](double t) { return motion(0, t); });
-  of.expected = 1.25 * of.read;  // the base reads 25 % too much, and so the model moves
+  const Eigen::MatrixXd needed = of.read;
+  of.expected = needed;
+  of.read = 1.25 * needed;  // the base reads 25 % too much, and so the model moves
   const ChannelLaw gain = law_of_input(of);
   EXPECT_EQ(gain.fault, ChannelFault::gain);
   EXPECT_NEAR(gain.value, 1.25, 1e-6);
+
+  constexpr int kLate = 3;  // instants
+  of.read = needed;
+  of.read.bottomRows(needed.rows() - kLate) = needed.topRows(needed.rows() - kLate);
+  const ChannelLaw late = law_of_input(of);
+  EXPECT_EQ(late.fault, ChannelFault::late);
+  EXPECT_NEAR(late.value, kLate / kRate_hz, 0.05 / kRate_hz);
 }
 
 TEST(ChannelLaw, OfAnInputIsNoLawThatMakesTheFloorsVanish) {
