@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/numeric/kernels.h"
 #include "estimator/simulate/building_model.h"
 #include "estimator/simulate/element_law.h"
 #include "estimator/simulate/linear_building.h"
@@ -19,13 +20,22 @@ constexpr double kBias_s = 150;  ///< far slower than any motion
 constexpr double kLeft = 0.01;   ///< remainder of a free vibration after settling
 constexpr double kMinSettle_s = 2, kMaxSettle_s = 120;
 
-std::unique_ptr<DrivenBuilding> building_of(const Structure& structure, const ParameterTable& table,
-                                            const GapModel& model, const Inputs& inputs,
-                                            double step_s) {
+std::vector<Effect> effects_of_building(const GapModel& model) {
   std::vector<Effect> effects;
   for (const Effect& e : model.effects)
     if (!is_channel_effect(e.kind) && e.kind != EffectKind::unmeasured_force) effects.push_back(e);
-  if (!concerns_building(effects))
+  return effects;
+}
+
+bool is_linear(const GapModel& model) {
+  return !concerns_building(effects_of_building(model));
+}
+
+std::unique_ptr<DrivenBuilding> building_of(const Structure& structure, const ParameterTable& table,
+                                            const GapModel& model, const Inputs& inputs,
+                                            double step_s) {
+  const std::vector<Effect> effects = effects_of_building(model);
+  if (is_linear(model))
     return std::make_unique<LinearBuilding>(structure, table, model.theta, inputs, step_s);
   return std::make_unique<NonlinearBuilding>(structure, table, model.theta, effects, inputs,
                                              step_s);
@@ -84,7 +94,31 @@ RunningModel::RunningModel(const Structure& structure, const ParameterTable& tab
       unfiltered_(static_cast<std::size_t>(structure.degrees_of_freedom())) {
   bias_ = before_ = after_ = Eigen::VectorXd::Zero(late.size());
   for (const double of_input : late) taps_.push_back(taps(steps_, of_input));
+  if (is_linear(model)) prepare_leap();
   restart();
+}
+
+/// Finds leap_ row by row, from the response to a unit of each entry.
+void RunningModel::prepare_leap() {
+  const auto motion = static_cast<Eigen::Index>(rest_.size()), inputs = before_.size();
+  leap_.setZero(motion + inputs * (1 + kTaps), padded(static_cast<int>(motion)));
+  from_.resize(static_cast<std::size_t>(leap_.rows()));
+  to_.resize(static_cast<std::size_t>(leap_.cols()));
+  for (Eigen::Index row = 0; row < leap_.rows(); ++row) {
+    motion_ = rest_;
+    before_.setZero();
+    recent_.setZero();
+    if (row < motion)
+      motion_[static_cast<std::size_t>(row)] = 1;
+    else if (row < motion + inputs)
+      before_[row - motion] = 1;
+    else
+      recent_((row - motion) % inputs, (row - motion) / inputs - 1) = 1;
+    (void)building_->resume(motion_);
+    step_through();
+    motion_ = building_->motion();
+    std::copy(motion_.begin(), motion_.end(), leap_.row(row).begin());
+  }
 }
 
 RunningModel::Taps RunningModel::taps(int steps, double late) {
@@ -116,6 +150,16 @@ void RunningModel::push(const Eigen::VectorXd& inputs) {
   bias_ += bias_share_ * (inputs - bias_);
   newest_ = newest_ == 0 ? kTaps - 1 : newest_ - 1;
   recent_.col(newest_) = inputs - bias_;
+  if (leap_.rows() > 0)
+    leap();
+  else
+    step_through();
+  const Eigen::VectorXd& accel = building_->accel_abs();
+  std::copy(accel.begin(), accel.end(), unfiltered_.begin());
+  filter_.push(unfiltered_);
+}
+
+void RunningModel::step_through() {
   building_->set_time(kAfterEverything_s);
   for (int step = 0; step < steps_; ++step) {
     for (Eigen::Index i = 0; i < after_.size(); ++i) {
@@ -127,9 +171,26 @@ void RunningModel::push(const Eigen::VectorXd& inputs) {
     building_->drive(before_, after_);
     before_ = after_;
   }
-  const Eigen::VectorXd& accel = building_->accel_abs();
-  std::copy(accel.begin(), accel.end(), unfiltered_.begin());
-  filter_.push(unfiltered_);
+}
+
+void RunningModel::leap() {
+  motion_ = building_->motion();
+  auto to = std::copy(motion_.begin(), motion_.end(), from_.begin());
+  to = std::copy(before_.begin(), before_.end(), to);
+  before_.setZero();
+  for (int age = 0; age < kTaps; ++age) {
+    const auto column = recent_.col((newest_ + age) % kTaps);
+    to = std::copy(column.begin(), column.end(), to);
+    for (Eigen::Index i = 0; i < before_.size(); ++i)
+      before_[i] += taps_[static_cast<std::size_t>(i)](steps_ - 1, age) * column[i];
+  }
+  std::fill(to_.begin(), to_.end(), 0);
+  kernels::in_use->multiply_add(from_.data(), static_cast<int>(from_.size()), 1,
+                                static_cast<int>(from_.size()), leap_.data(), to_.data(),
+                                static_cast<int>(to_.size()));
+  std::copy(to_.begin(), to_.begin() + static_cast<std::ptrdiff_t>(motion_.size()),
+            motion_.begin());
+  (void)building_->resume(motion_);
 }
 
 NoisePath::NoisePath(const Structure& structure, const ParameterTable& table, const GapModel& model,

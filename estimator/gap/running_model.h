@@ -50,6 +50,9 @@ class RunningModel {
 
  private:
   static constexpr int kTaps = 2 * kDelay + 1;
+  void step_through();
+  void leap();
+  void prepare_leap();
   static constexpr double kAfterEverything_s = 1e6;
 
   int steps_;  ///< per instant
@@ -60,6 +63,10 @@ class RunningModel {
   static Taps taps(int steps, double late);
   std::vector<Taps> taps_;  ///< of each input: steps x instants, newest first
   Eigen::MatrixXd recent_;  ///< inputs x ring of kTaps instants
+  /// All steps of an instant at once, without rows if the building is not linear: (motion, before_,
+  /// recent_ newest first) x motion, padded.
+  RowMatrix leap_;
+  std::vector<double> from_, to_, motion_;  ///< of leap_
   int newest_ = 0;
   double bias_share_;  ///< weight of a sample in the slow mean, which is bias
   Eigen::VectorXd bias_, before_, after_;
