@@ -38,7 +38,14 @@ void add_init(CommandList& commands) {
       "move along x\nare called y1, y2, ... in order of y; those that move along y are x1, x2, ... "
       "in order of x.\nFiles of strong-motion networks have the places in their headers. PLACE is "
       "then 2, roof, base\nor unused, or 2:x if the header has no direction.\nExit status: 0 "
-      "written, 2 not written; everything missing is listed.\nExamples:\n  framewatch init\n  "
+      "written, 2 not written; everything missing is listed.\nA few accelerometers will do on "
+      "rigid "
+      "floors, or on some floors: --sensors names the floors,\n--per-level the channels of each, "
+      "or "
+      "PLACE is 1@(0,2.5):x, floor and meters in plan (1@(0,2.5):xyz\nfor a sensor with three "
+      "axes).\nExamples:\n  framewatch init\n  framewatch init --live none --stories 12 --sensors "
+      "0,4,8,12 --per-level xxy --span-x 30 \\\n    --span-y 18 --heights 3.6 --mass 600kg/m2 "
+      "--out twelve.toml\n  "
       "framewatch init --record shaken.csv --unit g\n  framewatch init --record shaken.csv "
       "--stories 3 --bays 0x0 --heights 4.2,3.5,3.5 \\\n    --mass 18000 --channel acc0=0:x\n  "
       "framewatch init --live lcm --stories 5 --bays 1x1 --span-x 10.7 --span-y 15 \\\n    "
@@ -70,8 +77,16 @@ void add_init(CommandList& commands) {
   answer("plan", "lengths along x and y, m, for sensors given by the building's sides: 40x25",
          "TEXT");
   answer("floors",
-         "stiffness of the floors in their plane (default: flexible; of a station: rigid)", "TEXT")
+         "stiffness of the floors in their plane (default: flexible; with --per-level, places in "
+         "plan or\na station: rigid)",
+         "TEXT")
       ->check(CLI::IsMember({"flexible", "rigid"}));
+  answer("sensors", "floors with accelerometers, 0 is the base: all (default) or 0,4,8,12", "LIST");
+  answer(
+      "per-level",
+      "channels of each of these floors: frames (default), one on every frame; or xxy: two along "
+      "x,\non the first and the last frame, one along y",
+      "TEXT");
   answer("mass", "mass of each floor, kg or with a unit: 18000, 18t, 500kg/m2; or a list", "LIST");
   answer("area", "area of a floor, m^2, for a mass in kg/m2 without spans", "FLOAT");
   answer("start",
@@ -89,6 +104,7 @@ void add_init(CommandList& commands) {
       ->type_name("TEXT")
       ->allow_extra_args(false);
   add_file(command, "--out", arguments.out, "file to write")->capture_default_str();
+  add_file(command, "--drawing", arguments.drawing, "SVG file to draw floors and plan into");
   command->add_flag("--force", arguments.force, "overwrite an existing file");
   command->add_flag("--quiet", arguments.quiet, "do not print how the answers were understood");
   add_max_size(command);
