@@ -103,6 +103,7 @@ void add_uplink(CommandList& commands);
 
 // model_commands.cpp: configurations and models.
 void add_init(CommandList& commands);
+void add_export(CommandList& commands);
 void add_check(CommandList& commands);
 void add_reproduce(CommandList& commands);
 void add_diagnose(CommandList& commands);

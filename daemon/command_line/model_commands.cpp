@@ -5,6 +5,7 @@
 #include "daemon/tools/commands/check_command.h"
 #include "daemon/tools/diagnosis/adopt_command.h"
 #include "daemon/tools/diagnosis/diagnose_command.h"
+#include "daemon/tools/export/export_command.h"
 #include "daemon/tools/init/init_command.h"
 #include "daemon/tools/lab/reproduce_command.h"
 
@@ -25,6 +26,26 @@ void add_records(CLI::App* command, InitAnswers& answers) {
       ->type_name("FILE");
 }
 
+constexpr const char* kInitFooter =
+    "On a terminal it asks for what the options leave open. Unambiguous column titles such "
+    "as\nbase_x, F2-X or \"floor 2 frame y1\" give the place of a channel. PLACE is 0:x (base, "
+    "along x),\n2:y1 (floor 2, frame y1), or 2:x if only one frame moves along x. Frames that "
+    "move along x\nare called y1, y2, ... in order of y; those that move along y are x1, x2, ... "
+    "in order of x.\nFiles of strong-motion networks have the places in their headers. PLACE is "
+    "then 2, roof, base\nor unused, or 2:x if the header has no direction.\nExit status: 0 "
+    "written, 2 not written; everything missing is listed.\nA few accelerometers will do on "
+    "rigid "
+    "floors, or on some floors: --sensors names the floors,\n--per-level the channels of each, "
+    "or "
+    "PLACE is 1@(0,2.5):x, floor and meters in plan (1@(0,2.5):xyz\nfor a sensor with three "
+    "axes).\nExamples:\n  framewatch init\n  framewatch init --live none --stories 12 --sensors "
+    "0,4,8,12 --per-level xxy --span-x 30 \\\n    --span-y 18 --heights 3.6 --mass 600kg/m2 "
+    "--out twelve.toml\n  "
+    "framewatch init --record shaken.csv --unit g\n  framewatch init --record shaken.csv "
+    "--stories 3 --bays 0x0 --heights 4.2,3.5,3.5 \\\n    --mass 18000 --channel acc0=0:x\n  "
+    "framewatch init --live lcm --stories 5 --bays 1x1 --span-x 10.7 --span-y 15 \\\n    "
+    "--heights 3.5 --mass 400kg/m2 --start 0.5Hz --out tower.toml";
+
 }  // namespace
 
 void add_init(CommandList& commands) {
@@ -32,17 +53,7 @@ void add_init(CommandList& commands) {
   CLI::App* command = commands.add(
       "init",
       "write a first configuration of your building, by questions or from options and a record",
-      "On a terminal it asks for what the options leave open. Unambiguous column titles such "
-      "as\nbase_x, F2-X or \"floor 2 frame y1\" give the place of a channel. PLACE is 0:x (base, "
-      "along x),\n2:y1 (floor 2, frame y1), or 2:x if only one frame moves along x. Frames that "
-      "move along x\nare called y1, y2, ... in order of y; those that move along y are x1, x2, ... "
-      "in order of x.\nFiles of strong-motion networks have the places in their headers. PLACE is "
-      "then 2, roof, base\nor unused, or 2:x if the header has no direction.\nExit status: 0 "
-      "written, 2 not written; everything missing is listed.\nExamples:\n  framewatch init\n  "
-      "framewatch init --record shaken.csv --unit g\n  framewatch init --record shaken.csv "
-      "--stories 3 --bays 0x0 --heights 4.2,3.5,3.5 \\\n    --mass 18000 --channel acc0=0:x\n  "
-      "framewatch init --live lcm --stories 5 --bays 1x1 --span-x 10.7 --span-y 15 \\\n    "
-      "--heights 3.5 --mass 400kg/m2 --start 0.5Hz --out tower.toml");
+      kInitFooter);
   auto& answers = arguments.answers;
   const auto answer = [&](const char* name, const char* what, const char* type) {
     return command
@@ -70,8 +81,16 @@ void add_init(CommandList& commands) {
   answer("plan", "lengths along x and y, m, for sensors given by the building's sides: 40x25",
          "TEXT");
   answer("floors",
-         "stiffness of the floors in their plane (default: flexible; of a station: rigid)", "TEXT")
+         "stiffness of the floors in their plane (default: flexible; with --per-level, places in "
+         "plan or\na station: rigid)",
+         "TEXT")
       ->check(CLI::IsMember({"flexible", "rigid"}));
+  answer("sensors", "floors with accelerometers, 0 is the base: all (default) or 0,4,8,12", "LIST");
+  answer(
+      "per-level",
+      "channels of each of these floors: frames (default), one on every frame; or xxy: two along "
+      "x,\non the first and the last frame, one along y",
+      "TEXT");
   answer("mass", "mass of each floor, kg or with a unit: 18000, 18t, 500kg/m2; or a list", "LIST");
   answer("area", "area of a floor, m^2, for a mass in kg/m2 without spans", "FLOAT");
   answer("start",
@@ -89,10 +108,31 @@ void add_init(CommandList& commands) {
       ->type_name("TEXT")
       ->allow_extra_args(false);
   add_file(command, "--out", arguments.out, "file to write")->capture_default_str();
+  add_file(command, "--drawing", arguments.drawing, "SVG file to draw floors and plan into");
   command->add_flag("--force", arguments.force, "overwrite an existing file");
   command->add_flag("--quiet", arguments.quiet, "do not print how the answers were understood");
   add_max_size(command);
   commands.set_action(command, [&arguments] { return init(arguments); });
+}
+
+void add_export(CommandList& commands) {
+  ExportArguments& arguments = commands.arguments<ExportArguments>();
+  CLI::App* command = commands.add(
+      "export", "write a model for OpenSees, or as mass, damping and stiffness matrices",
+      "The model is the design of CONFIG and its effects, such as model.toml of `framewatch "
+      "diagnose`.\nAn effect that OpenSees or a matrix cannot hold is refused by name.\nExit "
+      "status: "
+      "0 written, 2 nothing written.\nExample: framewatch export diagnosis/model.toml --opensees "
+      "opensees --matrices matrices");
+  add_config(commands, command, arguments.config);
+  add_folder(command, "--opensees", arguments.opensees,
+             "folder for model.tcl and model.py, scripts of OpenSees");
+  add_folder(command, "--matrices", arguments.matrices,
+             "folder for M, C and K (Matrix Market, MATLAB) and rows.csv, the meaning of each row");
+  command->add_option("--without", arguments.without, "names of effects to leave out");
+  command->add_flag("--force", arguments.force, "write into folders that are not empty");
+  command->add_flag("--quiet", arguments.quiet, "print only problems");
+  commands.set_action(command, [&arguments] { return export_command(arguments); });
 }
 
 void add_check(CommandList& commands) {
@@ -160,6 +200,9 @@ void add_diagnose(CommandList& commands) {
                            ->add_option("--holdout", arguments.holdout,
                                         "records of other motions, to validate the result")
                            ->type_name("FILE"));
+  add_folder(command, "--design", arguments.design,
+             "start from the design in the matrices M.mtx, C.mtx and K.mtx of this folder, with "
+             "rows as\n`framewatch export --matrices` writes them");
   command->add_option("--event", arguments.event,
                       "id of a gap event: use the two halves of its stored samples instead of "
                       "--train and --holdout");

@@ -30,10 +30,11 @@ constexpr std::string_view kOwnTime = "time_s";
 /// Units of the columns TIMESTAMP and RECORD of TOA5 files.
 constexpr std::string_view kToa5TimeStamp = "TS", kToa5RecordNumber = "RN";
 
-constexpr std::array<std::string_view, 16> kTimes = {
+constexpr std::array<std::string_view, 22> kTimes = {
     "t",         "time",     "timestamp",    "datetime",     "date",       "utc",
     "seconds",   "sec",      "elapsedtime",  "relativetime", "sampletime", "epoch",
-    "epochtime", "unixtime", "absolutetime", "date/time"};
+    "epochtime", "unixtime", "absolutetime", "date/time",    "zeit",       "zeitstempel",
+    "tempo",     "tiempo",   "時刻",         "時間"};
 
 /// Returns a text in lower case, without blanks, '_' and '-'.
 std::string squeeze(std::string_view text) {

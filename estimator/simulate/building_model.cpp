@@ -26,14 +26,17 @@ struct Kinematics {
 };
 
 Kinematics kinematics(const Structure& s, const ParameterTable& table, Direction direction,
-                      double base_stiffness, double floor_stiffness) {
+                      double base_stiffness, const std::vector<double>& hinge_stiffness) {
   Kinematics out;
   const int first = direction == Direction::x ? 0 : s.n();
   const int count = direction == Direction::x ? s.n() : s.m();
   const int base = base_stiffness > 0 ? 1 : 0;
-  const int hinges = floor_stiffness > 0 ? s.stories : 0;
+  const auto hinges = static_cast<int>(hinge_stiffness.size());
   out.height = Eigen::MatrixXd::Zero(count * s.stories, base + count * hinges);
-  out.spring = Eigen::VectorXd::Constant(out.height.cols(), floor_stiffness);
+  out.spring = Eigen::VectorXd::Zero(out.height.cols());
+  for (int f = 0; f < count; ++f)
+    for (int floor = 0; floor < hinges; ++floor)
+      out.spring[base + f * hinges + floor] = hinge_stiffness[static_cast<std::size_t>(floor)];
   if (base) out.spring[0] = base_stiffness;
   for (int f = 0; f < count; ++f) {
     for (int story = 1; story <= s.stories; ++story) {
@@ -50,11 +53,11 @@ Kinematics kinematics(const Structure& s, const ParameterTable& table, Direction
 
 /// Applies base_rocking and frame_bending along one direction: replaces the frames' deformations in
 /// model.linear by those relative to the rotations and adds the rotational springs. The rotations
-/// have no inertia and follow the elastic moments (docs/effects.md). A stiffness <= 0 means no such
-/// rotation.
+/// have no inertia and follow the elastic moments (docs/effects.md). base_stiffness 0 and no hinges
+/// mean no such rotation.
 void add_rotations(const Structure& s, const ParameterTable& table, Direction direction,
-                   double base_stiffness, double floor_stiffness, LinearModel& model) {
-  const Kinematics k = kinematics(s, table, direction, base_stiffness, floor_stiffness);
+                   double base_stiffness, const std::vector<double>& hinges, LinearModel& model) {
+  const Kinematics k = kinematics(s, table, direction, base_stiffness, hinges);
   const auto rows = static_cast<Eigen::Index>(k.frames.size());
   Eigen::MatrixXd drift(rows, model.mass.size());
   Eigen::VectorXd stiffness(rows);
@@ -197,6 +200,23 @@ double rotational_stiffness(const std::vector<Effect>& effects, EffectKind kind,
 
 }  // namespace
 
+double rocking_stiffness(const std::vector<Effect>& effects, Direction direction) {
+  return rotational_stiffness(effects, base_rocking, direction);
+}
+
+std::vector<double> hinge_stiffness(const Structure& s, const std::vector<Effect>& effects,
+                                    const BendingStiffness& bending, Direction direction) {
+  const double effect = rotational_stiffness(effects, frame_bending, direction);
+  const std::size_t along = direction == Direction::x ? 0 : 1;
+  if (!(effect > 0) && !(bending[along] > 0)) return {};
+  std::vector<double> out(static_cast<std::size_t>(s.stories), effect);
+  for (std::size_t floor = 0; floor < out.size() && bending[along] > 0; ++floor) {
+    const double design = bending.of_floor(along, floor);
+    out[floor] = effect > 0 ? 1 / (1 / effect + 1 / design) : design;
+  }
+  return out;
+}
+
 AppliedForce::AppliedForce(const Effect& e) : from_s_(e.value("from_s")) {
   if (e.value("amplitude_n") > 0)
     tones_.push_back(
@@ -238,7 +258,7 @@ LinearModel linear_model(const Structure& structure, const ParameterTable& table
 
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects,
-                         const Eigen::MatrixXd& influence) {
+                         const Eigen::MatrixXd& influence, const BendingStiffness& bending) {
   const Structure s = with_extra_mass(structure, effects);
   const int nd = s.degrees_of_freedom();
   const auto size = nd + static_cast<Eigen::Index>(of_kind(effects, tuned_mass_damper).size());
@@ -250,9 +270,9 @@ LinearModel linear_model(const Structure& structure, const ParameterTable& table
     model.linear.push_back(
         {dense(e, size), theta[e.stiffness], theta[e.stiffness + table.elements()]});
   for (const Direction direction : {Direction::x, Direction::y}) {
-    const double base = rotational_stiffness(effects, base_rocking, direction);
-    const double floors = rotational_stiffness(effects, frame_bending, direction);
-    if (base > 0 || floors > 0) add_rotations(s, table, direction, base, floors, model);
+    const double base = rocking_stiffness(effects, direction);
+    const std::vector<double> hinges = hinge_stiffness(s, effects, bending, direction);
+    if (base > 0 || !hinges.empty()) add_rotations(s, table, direction, base, hinges, model);
   }
   add_modal_damping(structure, effects, model);
   add_hidden_masses(s, effects, model);

@@ -58,10 +58,19 @@ struct LinearModel {
 /// not.
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects);
-/// Builds the linear model for other inputs. influence: Inputs::influence.
+/// Builds the linear model for other inputs. influence: Inputs::influence. bending: hinges of the
+/// design, in series with those of frame_bending.
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects,
-                         const Eigen::MatrixXd& influence);
+                         const Eigen::MatrixXd& influence, const BendingStiffness& bending = {});
+
+/// Returns the rotational stiffness of base_rocking along a direction, all such effects in series,
+/// N*m/rad; 0 without any.
+double rocking_stiffness(const std::vector<Effect>& effects, Direction direction);
+/// Returns the rotational stiffness of the hinges at every floor of a frame, base first, those of
+/// frame_bending in series with the design's, N*m/rad. Empty: frames do not bend.
+std::vector<double> hinge_stiffness(const Structure& structure, const std::vector<Effect>& effects,
+                                    const BendingStiffness& bending, Direction direction);
 
 /// A law on an element of LinearModel::linear, or between floors.
 struct PlacedLaw {

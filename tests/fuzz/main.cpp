@@ -13,11 +13,12 @@ namespace framewatch::test {
 namespace {
 
 const FuzzTarget* const kTargets[] = {
-    &kPacketTarget,      &kMessagesTarget,  &kPageTarget,  &kSamplesTarget,    &kLogTarget,
-    &kRecordTarget,      &kMiniseedTarget,  &kMatTarget,   &kStationXmlTarget, &kCanTarget,
-    &kCandumpTarget,     &kVectorLogTarget, &kDbcTarget,   &kConfigTarget,     &kScenarioTarget,
-    &kExpectationTarget, &kBaselineTarget,  &kStateTarget, &kDatabaseTarget,   &kSessionTarget,
-    &kHttpTarget,        &kCommandTarget};
+    &kPacketTarget,     &kMessagesTarget, &kPageTarget,        &kSamplesTarget,
+    &kLogTarget,        &kRecordTarget,   &kMiniseedTarget,    &kMatTarget,
+    &kStationXmlTarget, &kCanTarget,      &kCandumpTarget,     &kVectorLogTarget,
+    &kDbcTarget,        &kConfigTarget,   &kScenarioTarget,    &kExpectationTarget,
+    &kBaselineTarget,   &kStateTarget,    &kDatabaseTarget,    &kSessionTarget,
+    &kHttpTarget,       &kCommandTarget,  &kMatrixMarketTarget};
 /// libFuzzer restarts itself, for example to merge, with its own arguments and this one.
 constexpr const char* kTargetVariable = "FRAMEWATCH_FUZZ_TARGET";
 const FuzzTarget* chosen = nullptr;

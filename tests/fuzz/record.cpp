@@ -26,7 +26,8 @@ void place_columns(const std::vector<std::string>& titles) {
   building.stories = 2;
   building.frames_x = {"y1", "y2"};
   building.frames_y = {"x1"};
-  const daemon::ColumnPlaces found = daemon::match_columns(building, titles, {});
+  const daemon::ColumnPlaces found =
+      daemon::match_columns(building, daemon::places_of(building), titles, {});
   std::set<std::size_t> used;
   for (const auto& column : found.column_of_place)
     require(!column || (*column < titles.size() && used.insert(*column).second), "a place each");

@@ -23,6 +23,6 @@ extern const FuzzTarget kLogTarget, kRecordTarget, kMiniseedTarget, kMatTarget, 
 extern const FuzzTarget kCanTarget, kCandumpTarget, kVectorLogTarget, kDbcTarget;
 extern const FuzzTarget kConfigTarget, kScenarioTarget, kExpectationTarget, kBaselineTarget;
 extern const FuzzTarget kStateTarget, kDatabaseTarget, kSessionTarget;
-extern const FuzzTarget kHttpTarget, kCommandTarget;
+extern const FuzzTarget kHttpTarget, kCommandTarget, kMatrixMarketTarget;
 
 }  // namespace framewatch::test

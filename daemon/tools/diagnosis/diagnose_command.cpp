@@ -18,6 +18,7 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/effects.h"
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
+#include "daemon/tools/export/model_matrices.h"
 #include "drivers/files/text_output.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"
@@ -165,11 +166,16 @@ bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {
 int diagnose_command(const DiagnoseArguments& a) {
   keep_freed_memory();
   std::vector<ConfigProblem> config_problems;
-  const std::optional<Config> config = load_config(a.config, config_problems);
+  std::optional<Config> config = load_config(a.config, config_problems);
   print_problems(config_problems);
   if (!config) return kBadInput;
 
   std::vector<std::string> problems;
+  if (!a.design.empty()) {
+    const auto design = read_matrix_design(config->pipeline.structure, a.design, problems);
+    if (print_all(problems)) return kBadInput;
+    config->pipeline.design = design->theta;
+  }
   const std::unique_ptr<DiagnosisRun> run = run_shown(*config, a, problems);
   if (print_all(problems) || !run) return kBadInput;
   const DiagnoseOutput output = run->output();

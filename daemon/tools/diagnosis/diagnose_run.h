@@ -19,8 +19,9 @@ namespace framewatch::daemon {
 struct DiagnoseArguments {
   std::string config;
   std::vector<std::string> train, holdout;  ///< record files and LCM event logs
-  std::string event;                 ///< id of a gap event whose stored samples replace these files
-  std::string out;                   ///< directory for diagnosis.json, report.html, model.toml
+  std::string event;   ///< id of a gap event whose stored samples replace these files
+  std::string design;  ///< folder with matrices of the design; empty: the configuration's
+  std::string out;     ///< directory for diagnosis.json, report.html, model.toml
   std::vector<std::string> without;  ///< names of effects to exclude
   estimator::ComponentTest component;
   int threads = 0;  ///< 0: as many as the machine has

@@ -12,13 +12,24 @@
 
 namespace framewatch::daemon {
 
+/// A point in plan, m from the first frames.
+struct PlanPoint {
+  double x_m = 0, y_m = 0;
+  bool operator==(const PlanPoint&) const = default;
+};
+
 /// Place and direction of an accelerometer of the building.
 struct Place {
   int story = 0;   ///< 0: base
-  int frame = -1;  ///< it rides on; -1: on the base
+  int frame = -1;  ///< it rides on; -1: on the base, or at a point
   estimator::Direction direction = estimator::Direction::x;
+  std::optional<PlanPoint> at = {};  ///< replaces `frame`
+  bool vertical = false;             ///< measures upward; `direction` has no meaning
   bool operator==(const Place&) const = default;
 };
+
+/// Returns 'x', 'y' or 'z'.
+char letter(const Place& place);
 
 /// Every place that needs a channel: the base in each direction that has frames, then floor by
 /// floor every frame.
@@ -27,10 +38,25 @@ std::vector<Place> places_of(const estimator::Structure& structure);
 /// "base, along x" or "floor 2, frame y1, along x".
 std::string place_text(const estimator::Structure& structure, const Place& place);
 
-/// As --channel takes it: "0:x" for the base, "2:y1" for a frame; "base" and "roof" for the floor,
-/// "2:x" where only one frame moves along x.
+/// Parses a place as --channel takes it: "0:x" for the base, "2:y1" for a frame, "2:x" where only
+/// one frame moves along x, "2@(4,1.5):x" for a point in plan. A floor may be "base" or "roof".
+/// Returns nullopt if the building has no such place.
 std::optional<Place> parse_place(const estimator::Structure& structure, std::string_view text);
 std::string place_option(const estimator::Structure& structure, const Place& place);
+
+/// Parses floors: a number, "base" or "roof". Returns nullopt if the building has no such floor.
+std::optional<int> parse_story(const estimator::Structure& structure, std::string_view text);
+
+/// Returns the point in plan of a place, m. A frame and the base have it in the middle of the
+/// direction that the place leaves open.
+PlanPoint point_of(const estimator::Structure& structure, const Place& place);
+
+/// Returns the places of the channels "xxy" on one floor. Several along a direction ride on frames,
+/// from the first to the last, at even distances. A single one rides on the only frame of its
+/// direction, or stands in the middle of the plan. `letters` has at most as many x as frames move
+/// along x, and so for y.
+std::vector<Place> places_on_level(const estimator::Structure& structure, int story,
+                                   const std::string& letters);
 
 /// The only frame that moves along a direction.
 std::optional<int> only_frame(const estimator::Structure& structure, estimator::Direction along);
@@ -70,6 +96,7 @@ struct BuildingPlan {
   double rate_hz = 100;
   std::string rate_from;
   std::vector<PlannedChannel> channels;
+  bool every_frame = true;  ///< every frame has a channel on every floor, the base one a direction
   std::string can_interface, dbc;  ///< empty: no CAN
   std::string record;              ///< empty: none; with its options as `replay` takes them
   int record_files = 1;            ///< over 1: `record` is in words, `convert` makes one of them

@@ -165,11 +165,12 @@ std::string channel_section(const estimator::Structure& s, const PlannedChannel&
   if (channel.station) return station_channel_section(channel);
   std::string out = fmt::format("\n[[channel]]\nname = {}\nstory = {}\n",
                                 quoted(channel.column.name), channel.place.story);
-  const char* direction = letter(channel.place.direction);
-  out += channel.place.story == 0
-             ? fmt::format("direction = \"{}\"\n", direction)
-             : fmt::format("frame = {}  # along {}\n", quoted(s.frame_name(channel.place.frame)),
-                           direction);
+  const Place& place = channel.place;
+  out += place.frame >= 0 ? fmt::format("frame = {}  # along {}\n",
+                                        quoted(s.frame_name(place.frame)), letter(place))
+                          : fmt::format("direction = \"{}\"\n", letter(place));
+  if (place.at) out += fmt::format("x_m = {:.6g}\ny_m = {:.6g}\n", place.at->x_m, place.at->y_m);
+  if (place.vertical) out += "use = false  # vertical\n";
   if (!channel.column.source.empty()) out += fmt::format("source = {}\n", channel.column.source);
   if (channel.column.scale != 1)
     out += fmt::format("scale = {:.10g}  # m/s^2 of one of the signal's\n", channel.column.scale);
@@ -190,11 +191,15 @@ std::string building_toml(const BuildingPlan& p) {
         "positive\n# axis points, x_m and y_m are from the first frames; `framewatch check` says "
         "what they show.\n# noise_mps2_per_rthz (data sheet) is worth giving.\n";
   else
-    out +=
-        "\n# The accelerometers: every frame has one on every floor, the base one in each "
-        "direction. An\n"
-        "# axis mounted backwards has polarity = -1; noise_mps2_per_rthz (data sheet) is worth "
-        "giving.\n";
+    out += std::string(
+               p.every_frame
+                   ? "\n# The accelerometers: every frame has one on every floor, the base one "
+                     "in each direction. An\n"
+                   : "\n# The accelerometers: on a frame, or at x_m, y_m from the first frames. "
+                     "Stories between measured\n# floors are identified together "
+                     "(docs/partial.md); `framewatch check` says what they show. An\n") +
+           "# axis mounted backwards has polarity = -1; noise_mps2_per_rthz (data sheet) is worth "
+           "giving.\n";
   const auto lcm = std::find_if(p.channels.begin(), p.channels.end(), [](const auto& channel) {
     return channel.column.source.find("lcm") != std::string::npos;
   });

@@ -19,6 +19,11 @@ namespace {
 BuildingDraft first_draft(const InitAnswers& answers) {
   BuildingDraft d;
   d.record_arguments = answers.record;
+  if (const auto at = answers.by_option.find("per-level"); at != answers.by_option.end())
+    d.wanted_per_level = at->second;
+  d.wants_points =
+      std::any_of(answers.channels.begin(), answers.channels.end(),
+                  [](const std::string& text) { return text.find('@') != std::string::npos; });
   d.plan.structure.stories = 1;
   d.plan.structure.frames_x = {"y1",
                                "y2"};  // default: most buildings have spans in both directions

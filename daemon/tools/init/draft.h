@@ -49,6 +49,10 @@ struct BuildingDraft {
   std::optional<TitleReading> reading;    ///< of the columns' titles
   std::optional<StationReading> station;  ///< content of the headers of a network's files
   StationPlan station_plan;
+  std::vector<int> levels;       ///< floors with accelerometers, ascending; empty: all
+  std::string wanted_per_level;  ///< the answer to per-level as typed, for earlier defaults
+  bool wants_points = false;     ///< a channel's place is a point in plan
+  std::string per_level;  ///< letters of the channels on each of them; empty: one on every frame
 };
 
 /// A question without a valid answer.

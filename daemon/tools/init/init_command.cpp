@@ -17,6 +17,7 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/tools/init/building_toml.h"
 #include "daemon/tools/init/dialogue.h"
+#include "daemon/tools/init/plan_drawing.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/files/text_output.h"
@@ -98,9 +99,12 @@ int write(const BuildingPlan& plan, const InitArguments& a, const std::string& s
   log_doubts(found.doubts);
   if (const std::string why = drivers::write_text_file(a.out, text); !why.empty())
     return refuse("init", why);
+  if (!a.drawing.empty())
+    if (const std::string why = drivers::write_text_file(a.drawing, plan_svg(plan)); !why.empty())
+      return refuse("init", why);
   if (!a.quiet)
     fmt::print(a.out == drivers::kStandardOutput ? stderr : stdout, "{}",
-               printable_lines(summary + next_steps(plan, a.out)));
+               printable_lines(summary + plan_text(plan) + next_steps(plan, a.out)));
   return 0;
 }
 
@@ -111,6 +115,10 @@ int init(const InitArguments& a) {
     return refuse(
         "init",
         a.out + ": already exists; use --force to overwrite it or --out FILE for another file");
+  if (!a.drawing.empty() && !a.force && !drivers::is_absent(a.drawing))
+    return refuse("init", a.drawing + ": already exists; use --force to overwrite it");
+  if (!a.drawing.empty() && !a.drawing.ends_with(".svg"))
+    return refuse("init", "--drawing " + a.drawing + ": the drawing is SVG; use a name in .svg");
   ColumnCache files;
   const InitReading reading = read_answers(a.answers, true, files);
   if (reading.open.empty()) {

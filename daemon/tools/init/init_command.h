@@ -10,7 +10,8 @@ namespace framewatch::daemon {
 struct InitArguments {
   InitAnswers answers;
   std::string out = "building.toml";
-  bool force = false;  ///< overwrite an existing file
+  std::string drawing;  ///< SVG file of the plan; empty: none
+  bool force = false;   ///< overwrite an existing file
   bool quiet = false;
 };
 

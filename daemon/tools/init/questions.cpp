@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/init/questions.h"
 
+#include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -103,6 +105,67 @@ std::string take_directions(const std::string& text, Draft& d, ColumnCache&) {
   if (!d.has_x) d.plan.structure.frames_x.clear();
   if (!d.has_y) d.plan.structure.frames_y.clear();
   return "";
+}
+
+/// Parses floors such as "0, 4, 8, roof", once each.
+std::string take_sensors(const std::string& text, Draft& d, ColumnCache&) {
+  if (text == "all") return "";
+  std::vector<std::string_view> words;
+  drivers::split_commas(text, words);
+  for (const std::string_view word : words) {
+    const auto story = parse_story(d.plan.structure, drivers::trimmed(word));
+    if (!story && !d.stories_known) return "";
+    if (!story)
+      return fmt::format("{}: floors from 0 (base) to {} (roof), such as base, 4, 8, roof; or all",
+                         printable(std::string(word)), d.plan.structure.stories);
+    d.levels.push_back(*story);
+  }
+  std::sort(d.levels.begin(), d.levels.end());
+  if (std::adjacent_find(d.levels.begin(), d.levels.end()) != d.levels.end())
+    return "the same floor twice";
+  return d.levels.back() > 0 ? "" : "one floor above the base at least";
+}
+
+std::string understood_sensors(const Draft& d) {
+  if (d.levels.empty()) return "on all floors";
+  std::string out;
+  for (const int level : d.levels) out += fmt::format("{}{}", out.empty() ? "" : ", ", level);
+  return "on floors " + out + (d.levels.front() > 0 ? ", and the base" : "");
+}
+
+std::string take_per_level(const std::string& text, Draft& d, ColumnCache&) {
+  if (text == "frames") return "";
+  if (text.empty() || text.size() > 40 || text.find_first_not_of("xyz") != std::string::npos ||
+      text.find_first_of("xy") == std::string::npos)
+    return "a letter for each channel on a floor: xy, xxy, xyz; or frames";
+  d.per_level = text;
+  if (!d.bays_known) return "";
+  const estimator::Structure& s = d.plan.structure;
+  for (const auto& [along, frames, bays] :
+       {std::tuple('x', s.n(), "0x1"), std::tuple('y', s.m(), "1x0")}) {
+    const auto channels = std::count(text.begin(), text.end(), along);
+    if (frames == 0 && channels > 0) return fmt::format("no frame moves along {}", along);
+    if (frames > 0 && channels == 0)
+      return fmt::format("no channel along {0}: --directions {1} leaves that direction out", along,
+                         along == 'x' ? 'y' : 'x');
+    if (channels > std::max(frames, 1))
+      return fmt::format(
+          "{} channels along {}, but {} along it: give more --bays (two frames are {}), or places "
+          "by --channel NAME=1@(0,2.5):{}",
+          channels, along, frames == 1 ? "one frame moves" : fmt::format("{} frames move", frames),
+          bays, along);
+  }
+  return "";
+}
+
+/// Returns the bays that the channels of a level need if no more are known: one where a direction
+/// has several channels.
+std::string bays_of_level(const std::string& per_level) {
+  const auto several = [&](char along) {
+    return std::count(per_level.begin(), per_level.end(), along) > 1;
+  };
+  if (!several('x') && !several('y')) return "0x0";
+  return "1x1";
 }
 
 std::string ask_bays(const Draft& d) {
@@ -247,6 +310,9 @@ std::string take_rate(const std::string& text, Draft& d, ColumnCache&) {
 }
 
 std::string initial_directions(const Draft& d) {
+  const bool x = d.wanted_per_level.find('x') != std::string::npos;
+  const bool y = d.wanted_per_level.find('y') != std::string::npos;
+  if (d.wanted_per_level != "frames" && x != y) return x ? "x" : "y";
   if (!d.station || d.station->along_x == d.station->along_y) return "both";
   return d.station->along_x ? "x" : "y";
 }
@@ -282,6 +348,12 @@ std::string take_plan(const std::string& text, Draft& d, ColumnCache&) {
 bool asks_plan(const Draft& d) {
   return d.station && ((d.station->needs_plan_x && d.plan.structure.m() < 2) ||
                        (d.station->needs_plan_y && d.plan.structure.n() < 2));
+}
+
+/// True unless one frame stands for each direction.
+bool asks_per_level(const Draft& d) {
+  const estimator::Structure& s = d.plan.structure;
+  return !d.station && (s.n() > 1 || s.m() > 1 || !d.wanted_per_level.empty());
 }
 
 template <const char* Text>
@@ -320,9 +392,14 @@ constexpr char kAskBase[] =
 constexpr char kAskPlan[] =
     "How long is the plan along x and y, in m, such as 40x25? The headers place sensors at its "
     "sides.";
+constexpr char kAskSensors[] =
+    "Which floors have accelerometers: all, or a list such as 0, 4, 8, 12 (0 is the base)?";
+constexpr char kAskPerLevel[] =
+    "Which channels has each of these floors: one on every frame (frames), or a letter for each,\n"
+    "such as xxy: two along x, on the first and the last frame, and one along y?";
 constexpr char kAskRate[] = "How many samples per second does each accelerometer give?";
 constexpr char kNone[] = "none", kCan0[] = "can0", kBuilding[] = "building", k100[] = "100",
-               kGround[] = "ground";
+               kGround[] = "ground", kAll[] = "all", kFrames[] = "frames";
 
 const InitQuestion kQuestions[] = {
     {"record", "record", fixed<kAskRecord>, always, fixed<kNone>, take_record, understood_record},
@@ -353,7 +430,12 @@ const InitQuestion kQuestions[] = {
        return std::string(!d.has_y ? "x" : !d.has_x ? "y" : "x and y");
      }},
     {"bays", "bays", ask_bays, always,
-     [](const Draft& d) { return std::string(d.has_x && d.has_y && !d.station ? "" : "0x0"); },
+     [](const Draft& d) {
+       if (d.wanted_per_level.find_first_not_of("xyz") == std::string::npos &&
+           !d.wanted_per_level.empty())
+         return bays_of_level(d.wanted_per_level);
+       return std::string(d.has_x && d.has_y && !d.station ? "" : "0x0");
+     },
      take_bays, understood_bays},
     {"span-x", "spans along x", fixed<kAskSpanX>,
      [](const Draft& d) { return d.plan.structure.m() > 1; }, must, take_span_x,
@@ -371,10 +453,21 @@ const InitQuestion kQuestions[] = {
      [](const Draft& d) {
        return d.station || d.plan.structure.n() > 1 || d.plan.structure.m() > 1;
      },
-     [](const Draft& d) { return std::string(d.station ? "rigid" : "flexible"); }, take_floors,
+     [](const Draft& d) {
+       const bool partial = !d.wanted_per_level.empty() && d.wanted_per_level != "frames";
+       return std::string(d.station || partial || d.wants_points ? "rigid" : "flexible");
+     },
+     take_floors,
      [](const Draft& d) {
        return std::string(d.plan.structure.floor == estimator::FloorModel::rigid ? "rigid"
                                                                                  : "flexible");
+     }},
+    {"sensors", "accelerometers", fixed<kAskSensors>, [](const Draft& d) { return !d.station; },
+     fixed<kAll>, take_sensors, understood_sensors},
+    {"per-level", "on each floor", fixed<kAskPerLevel>, asks_per_level, fixed<kFrames>,
+     take_per_level,
+     [](const Draft& d) {
+       return d.per_level.empty() ? std::string("one channel on every frame") : d.per_level;
      }},
     {"mass", "mass", fixed<kAskMass>, always, must, take_mass,
      [](const Draft& d) { return d.plan.mass_from.empty() ? "a density" : d.plan.mass_from; }},

@@ -10,6 +10,7 @@ before() {
   }' >shaken.csv
 }
 expected='
+twelve.toml
 building.toml
 tower.toml
 '

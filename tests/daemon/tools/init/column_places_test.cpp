@@ -21,7 +21,7 @@ estimator::Structure building(int stories, int frames_x, int frames_y) {
 /// "0:x=base_x 1:y1=- ..."
 std::string matched(const estimator::Structure& s, const std::vector<std::string>& titles,
                     std::optional<TitleReading> reading = {}) {
-  const ColumnPlaces found = match_columns(s, titles, reading);
+  const ColumnPlaces found = match_columns(s, places_of(s), titles, reading);
   const std::vector<Place> places = places_of(s);
   std::string out;
   for (std::size_t p = 0; p < places.size(); ++p) {
@@ -67,7 +67,7 @@ TEST(ColumnPlaces, ALetterWithANumberMeansAFrameOrADirection) {
                         "x2 story 1 y"}),
             "0:x=base_x 0:y=base_y 1:y1=frame y1 story 1 1:y2=frame y2 story 1 1:x1=x1 story 1 y "
             "1:x2=x2 story 1 y ");
-  EXPECT_EQ(match_columns(s, titles, {}).column_of_place[2], std::nullopt);
+  EXPECT_EQ(match_columns(s, places_of(s), titles, {}).column_of_place[2], std::nullopt);
 }
 
 TEST(ColumnPlaces, TheBuildingDecidesAmbiguousNames) {
@@ -79,6 +79,44 @@ TEST(ColumnPlaces, TheBuildingDecidesAmbiguousNames) {
   EXPECT_EQ(
       matched(building(1, 3, 2), {"base_x", "base_y", "F1-Y1", "F1-Y2", "F1-X1", "F1-X2", "F1-X3"}),
       "0:x=base_x 0:y=base_y 1:y1=F1-X1 1:y2=F1-X2 1:y3=F1-X3 1:x1=F1-Y1 1:x2=F1-Y2 ");
+}
+
+TEST(ColumnPlaces, ReadsGermanItalianSpanishAndJapaneseTitles) {
+  const auto s = building(2, 1, 1);
+  const std::vector<std::vector<std::string>> titles{
+      {"Fundament X", "Fundament Y", "1. OG X-Richtung", "1.OG Y", "Dach x", "Dach y"},
+      {"Rütteltisch_x", "Rütteltisch_y", "Geschoß 1 x", "Geschoß 1 y", "Stockwerk 2 x", "OG2 y"},
+      {"EG X", "EG Y", "Beschleunigung Decke 1 x", "1. Etage y", "2. Geschoss x", "Ebene 2 y"},
+      {"tavola x", "piano terra y", "1° piano direzione x", "piano 1 y", "copertura x", "Tetto Y"},
+      {"fondazione x", "fondazione y", "Livello 1 X", "solaio 1 y", "2° piano x", "sommità y"},
+      {"mesa x", "planta baja y", "Piso 1 dirección x", "1er piso y", "azotea x", "techo eje y"},
+      {"cimentación X", "suelo Y", "aceleración nivel 1 x", "planta 1 y", "Cubierta X",
+       "2do piso y"},
+      {"1階X", "1階Y", "2階X方向", "2階Y方向", "屋上X", "屋上Y"},
+      {"基礎X", "振動台Y", "２階　Ｘ", "2階床 Y加速度", "3階X", "R階Y"}};
+  for (const auto& t : titles)
+    EXPECT_EQ(matched(s, t), "0:x=" + t[0] + " 0:y=" + t[1] + " 1:y1=" + t[2] + " 1:x1=" + t[3] +
+                                 " 2:y1=" + t[4] + " 2:x1=" + t[5] + " ");
+  for (const char* title : {"B1階X", "地下1階X", "0階X", "2階 3階 X", "Decke über EG x", "sótano x",
+                            "\xEF\xBC", "\xEF\xBC\x41 x", "階X"})
+    EXPECT_EQ(matched(s, {title}), "0:x=- 0:y=- 1:y1=- 1:x1=- 2:y1=- 2:x1=- ") << title;
+}
+
+TEST(ColumnPlaces, FewSensorsLeaveNumbersOfDirections) {
+  auto s = building(3, 3, 2);
+  s.span_y = {4, 4};
+  s.span_x = {6};
+  std::vector<Place> places;
+  for (const int story : {0, 3})
+    for (const Place& place : places_on_level(s, story, "xxyz")) places.push_back(place);
+  std::string options;
+  for (const Place& place : places) options += place_option(s, place) + " ";
+  EXPECT_EQ(options, "0@(3,0):x 0@(3,8):x 0:y 0@(3,4):z 3:y1 3:y3 3@(3,4):y 3@(3,4):z ");
+  const std::vector<std::string> titles{"base x1", "base x2", "base y", "base z",
+                                        "roof x1", "roof x2", "roof y", "roof z"};
+  const ColumnPlaces found = match_columns(s, places, titles, {});
+  for (std::size_t p = 0; p < places.size(); ++p) EXPECT_EQ(found.column_of_place[p], p) << p;
+  for (const Place& place : places) EXPECT_EQ(parse_place(s, place_option(s, place)), place);
 }
 
 TEST(ColumnPlaces, LeavesNamesWithoutAPlace) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -48,7 +49,7 @@ TEST_F(InitCommand, WritesWhatCheckAccepts) {
 /// Runs on a terminal of `script`.
 TEST_F(InitCommand, AsksOnATerminal) {
   const ShellResult said = shell(
-      "printf 'none\\nlcm\\n\\n2\\nx\\n\\n3.5\\n18 t\\n\\n\\n\\n' | "
+      "printf 'none\\nlcm\\n\\n2\\nx\\n\\n3.5\\n\\n18 t\\n\\n\\n\\n' | "
       "timeout 60 script -qec \"$F init\" /dev/null");
   EXPECT_EQ(said.status, 0) << said.out;
   EXPECT_NE(said.out.find("How many stories does it have"), std::string::npos) << said.out;
@@ -128,6 +129,50 @@ TEST_F(InitCommand, ReadsSignalsOfACanBus) {
             std::string::npos)
       << text;
   EXPECT_EQ(shell("$F check building.toml").status, 0) << shell("$F check building.toml").err;
+}
+
+TEST_F(InitCommand, DrawsFloorsAndPlan) {
+  const ShellResult said = shell(
+      "$F init --live none --stories 12 --sensors 0,4,8,12 --per-level xxy --span-x 30 --span-y 18 "
+      "--heights 3.6 --mass 600kg/m2 --drawing plan.svg");
+  ASSERT_EQ(said.status, 0) << said.err;
+  for (const char* line :
+       {"   12 roof  F12-Y1 F12-Y2 F12-y\n   11 to 9  none\n", "  base  base-x1 base-x2 base-y\n",
+        "Plan of floors 12 roof, 8, 4, base (> along x"})
+    EXPECT_NE(said.out.find(line), std::string::npos) << line << "\n" << said.out;
+  const std::string svg = test::read_file(directory_.path("plan.svg"));
+  EXPECT_EQ(svg.find("<svg "), 0u);
+  for (const char* name : {">F12-Y1<", ">F12-y<", ">Plan of floors 12 roof, 8, 4, base<"})
+    EXPECT_NE(svg.find(name), std::string::npos) << name << "\n" << svg;
+  EXPECT_EQ(shell("$F check building.toml").status, 0);
+  const ShellResult again = shell(std::string("$F init --out b.toml --drawing plan.svg ") + kHouse);
+  EXPECT_EQ(again.status, kBadInput);
+  EXPECT_NE(again.err.find("plan.svg: already exists"), std::string::npos) << again.err;
+  const ShellResult picture =
+      shell(std::string("$F init --out b.toml --drawing plan.png ") + kHouse);
+  EXPECT_NE(picture.err.find("--drawing plan.png: the drawing is SVG"), std::string::npos)
+      << picture.err;
+  EXPECT_EQ(shell("ls b.toml plan.png").status, 2) << "bad input writes nothing";
+}
+
+TEST_F(InitCommand, RefusesImpossibleLayouts) {
+  const std::string tower =
+      "$F init --live none --stories 4 --span-x 6 --span-y 4 --heights 3 --mass 9t ";
+  for (const auto& [options, reason] :
+       {std::pair("--sensors 0,5", "5: floors from 0 (base) to 4 (roof)"),
+        std::pair("--sensors 2,roof,4", "the same floor twice"),
+        std::pair("--sensors base", "one floor above the base at least"),
+        std::pair("--per-level z", "a letter for each channel on a floor"),
+        std::pair("--per-level xxxyy", "3 channels along x, but 2 frames move along it"),
+        std::pair("--directions both --per-level xx", "no channel along y"),
+        std::pair("--bays 1x1 --channel 'A=5@(0,0):x'", "write NAME=FLOOR@(X,Y):x"),
+        std::pair("--bays 1x1 --channel 'A=1@(0):x'", "write NAME=FLOOR@(X,Y):x"),
+        std::pair("--bays 1x1 --channel '=1@(0,0):x'", "the channel needs a name")}) {
+    const ShellResult said = shell(tower + options);
+    EXPECT_EQ(said.status, kBadInput) << options;
+    EXPECT_NE(said.err.find(reason), std::string::npos) << options << "\n" << said.err;
+  }
+  EXPECT_EQ(shell("ls").out, "");
 }
 
 }  // namespace init_command_test
