@@ -163,7 +163,7 @@ async function refuses(page, sessions, name) {
     await page.waitForFunction(() => document.getElementById('p-news').textContent !== '', null, kPatience).catch(() => {});
     return page.textContent('#p-news');
   };
-  for (const [session, words] of [['empty', /holds no samples/], ['cut', /Damaged: raw\.lcmlog: byte \d+: the recording is cut off/], ['other', /another building: its channels are base-x, .* Open it with/], ['missing', /no such session/], ['%2e%2e', /no such session/]]) {
+  for (const [session, words] of [['empty', /holds no samples/], ['cut', /Damaged: raw\.lcmlog: byte \d+: the recording is cut off/], ['other', /another building: of its channels, this page lacks roof; .* lacks F2-Y1\. Open it with/], ['missing', /no such session/]]) {
     const text = await news(session);
     expect(words.test(text), `${session}: ${text}`);
   }

@@ -209,11 +209,10 @@ TEST(SessionPlayback, RefusesAnotherBuilding) {
   EXPECT_EQ(played(*changed).front().data["same_config"], false);
   r.session.run[2].name = "roof";
   r.write();
-  EXPECT_EQ(
-      r.refusal(),
-      "this session is of another building: its channels are base-x, base-y, roof, F1-Y2, "
-      "..., those of this page are base-x, base-y, F1-Y1, F1-Y2, .... Open it with framewatch "
-      "serve and its own configuration");
+  EXPECT_EQ(r.refusal(),
+            "this session is of another building: of its channels, this page lacks roof; of the "
+            "channels of this page, the session lacks F1-Y1. Open it with framewatch serve and its "
+            "own configuration");
   r.session.run.clear();
   parameter_table_t table{};
   table.name = {"kx_1_y7"};
@@ -225,7 +224,7 @@ TEST(SessionPlayback, RefusesAnotherBuilding) {
   r.estimates.clear();
   append(r.estimates, kHost_us, "FRAMEWATCH_PARAMETERS", table);
   r.write();
-  EXPECT_NE(r.refusal().find("another building: its parameters are kx_1_y7"), std::string::npos);
+  EXPECT_NE(r.refusal().find("of its parameters, this page lacks kx_1_y7; of"), std::string::npos);
 }
 
 TEST(SessionPlayback, RefusesWhatIsNoFinishedSessionOfTheFolder) {
