@@ -18,9 +18,8 @@ bool is_plain_name(const std::string& name) {
          name.find('\0') == std::string::npos;
 }
 
-bool is_servable(const struct stat& file) {
-  return S_ISREG(file.st_mode) && file.st_size >= 0 &&
-         static_cast<std::uint64_t>(file.st_size) <= kMaxServedBytes;
+bool is_small(const struct stat& file) {
+  return file.st_size >= 0 && static_cast<std::uint64_t>(file.st_size) <= kMaxServedBytes;
 }
 
 /// Opens the folder of the last name. Returns false if it is not a folder, or a link.
@@ -35,24 +34,33 @@ bool open_parent(const std::string& folder, const std::vector<std::string>& name
 }
 
 /// Never opens a device, because opening alone can have an effect.
-bool is_servable_in(const drivers::Descriptor& parent, const std::string& name) {
+std::optional<struct stat> regular_file_in(const drivers::Descriptor& parent,
+                                           const std::string& name) {
   struct stat file {};
-  return ::fstatat(parent.get(), name.c_str(), &file, AT_SYMLINK_NOFOLLOW) == 0 &&
-         is_servable(file);
+  if (::fstatat(parent.get(), name.c_str(), &file, AT_SYMLINK_NOFOLLOW) != 0 ||
+      !S_ISREG(file.st_mode))
+    return std::nullopt;
+  return file;
 }
 
 }  // namespace
 
+drivers::Descriptor open_served_file(const std::string& folder,
+                                     const std::vector<std::string>& names) {
+  drivers::Descriptor parent, file;
+  if (!open_parent(folder, names, parent) || !regular_file_in(parent, names.back())) return file;
+  file.reset(::openat(parent.get(), names.back().c_str(),
+                      O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  struct stat now {};
+  if (file.get() >= 0 && (::fstat(file.get(), &now) != 0 || !S_ISREG(now.st_mode))) file.reset(-1);
+  return file;
+}
+
 std::optional<std::string> read_served_file(const std::string& folder,
                                             const std::vector<std::string>& names) {
-  drivers::Descriptor parent;
-  if (!open_parent(folder, names, parent) || !is_servable_in(parent, names.back()))
-    return std::nullopt;
-  const drivers::Descriptor file(
-      ::openat(parent.get(), names.back().c_str(),
-               O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  const drivers::Descriptor file = open_served_file(folder, names);
   struct stat now {};
-  if (file.get() < 0 || ::fstat(file.get(), &now) != 0 || !is_servable(now)) return std::nullopt;
+  if (file.get() < 0 || ::fstat(file.get(), &now) != 0 || !is_small(now)) return std::nullopt;
   std::string text(static_cast<std::size_t>(now.st_size), '\0');
   std::size_t read = 0;
   while (read < text.size()) {
@@ -67,7 +75,9 @@ std::optional<std::string> read_served_file(const std::string& folder,
 
 bool is_served_file(const std::string& folder, const std::vector<std::string>& names) {
   drivers::Descriptor parent;
-  return open_parent(folder, names, parent) && is_servable_in(parent, names.back());
+  if (!open_parent(folder, names, parent)) return false;
+  const auto file = regular_file_in(parent, names.back());
+  return file && is_small(*file);
 }
 
 }  // namespace framewatch::daemon

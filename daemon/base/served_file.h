@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/files/descriptor.h"
+
 namespace framewatch::daemon {
 
 inline constexpr std::size_t kMaxServedBytes = 16 << 20;
@@ -15,6 +17,11 @@ inline constexpr std::size_t kMaxServedBytes = 16 << 20;
 /// other end of a pipe or device.
 std::optional<std::string> read_served_file(const std::string& folder,
                                             const std::vector<std::string>& names);
+
+/// Opens such a file of any size for reading. Returns a negative descriptor if there
+/// is no such file.
+drivers::Descriptor open_served_file(const std::string& folder,
+                                     const std::vector<std::string>& names);
 
 /// Returns true if read_served_file() would read the file.
 bool is_served_file(const std::string& folder, const std::vector<std::string>& names);

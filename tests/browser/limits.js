@@ -9,7 +9,7 @@ const fs = require('fs'), http = require('http'), net = require('net'), os = req
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
 const kViewers = 200, kSlow = 2000, kMaxCpu = 0.10, kMinFrames = 20, kQuietFrames = 50, kPlayed_s = 12;
-const kPageBytes = 150000;
+const kPageBytes = 160000;
 
 const children = [], failures = [];
 const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };

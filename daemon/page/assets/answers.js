@@ -31,6 +31,7 @@ function onAnswers(a) {
 }
 function showAnswers() {
   const list = $('answers');
+  if (!told.answers.length) list.replaceChildren();
   while (list.children.length < told.answers.length) {
     const item = document.createElement('li');
     item.append(document.createElement('h2'), document.createElement('p'), document.createElement('ul'));

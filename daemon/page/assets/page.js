@@ -7,6 +7,9 @@ const fitWords = ['', 'it fits', 'only changes are reliable', 'the model does no
 const kSilence_ms = 1500;
 let plan, building, boxPlots = [], strips = {}, boxes, estimate, fit, baseline = [], status, chosen = 0;
 let lastMotion = 0, lastAlive = 0, lastRow = null, frames = [], known = [];
+// Width of the drawings on paper, CSS pixels; 0: on the screen.
+const kPaper_px = 680;
+let printWidth = 0;
 let boxMode = localStorage.getItem('boxes') || 'percent';
 const alarms = new Map();
 // State that the browser tests read.
@@ -37,13 +40,16 @@ function showTip(text, x, y) {
 function hideTip() { $('tip').hidden = true; }
 const groupMeaning = {0: 'Stories between two measured floors, together: the stiffness of their springs in series, the only stiffness that these channels determine.', 2: 'Viscous damping of these stories together; an equivalent value, whose changes are more reliable than its size.'};
 const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.', 'Rotational stiffness of the frames against bending at their base; above the base it is fixed to the design.'];
-function reference(i) { return baseline[i] || plan.parameters[i].design || null; }
+// Damping is compared with a baseline or with nothing: its design is a guess.
+const isDamping = i => plan.parameters[i].kind === 2 || plan.parameters[i].kind === 3;
+function reference(i) { return baseline[i] || (!isDamping(i) && plan.parameters[i].design) || null; }
 const baselineKnown = () => baseline.some(b => b);
-const flows = () => lastMotion > 0 && performance.now() - lastMotion <= kSilence_ms;
+const now_ms = () => playback ? playback.ms : performance.now();
+const flows = () => lastMotion > 0 && now_ms() - lastMotion <= kSilence_ms;
 const isNow = i => flows() && estimate !== undefined && estimate.reason[i] === 0;
 const newestUs = () => Math.max(lastRow || 0, estimate ? estimate.end_us : 0);
 // Estimates the sensor time now, so that old values age while no data comes.
-const nowUs = () => newestUs() + (flows() || !lastMotion ? 0 : 1e3 * (performance.now() - lastMotion));
+const nowUs = () => newestUs() + (flows() || !lastMotion ? 0 : 1e3 * (now_ms() - lastMotion));
 const whyNot = i => estimate ? reasons[estimate.reason[i]] || 'no value' : 'no value yet';
 function fitOf(i) {
   if (!fit || !fit.word[i]) return '';
@@ -56,7 +62,7 @@ function elementText(i) {
   if (v && fitOf(i)) out.push(fitOf(i));
   if (!isNow(i) && flows()) out.push(`now no value: ${whyNot(i)}`);
   if (reference(i)) out.push(`${baseline[i] ? 'baseline' : 'design'} ${plain(reference(i), q.unit)}`);
-  if (boxes && boxes.count[i] > 0) out.push(`median ${plain(boxes.median[i], q.unit)}, quartiles ${plain(boxes.q1[i], q.unit)} to ${plain(boxes.q3[i], q.unit)}, ${boxes.outliers[i]} outliers in ${boxes.count[i]} windows`);
+  if (boxes && boxes.count[i] > 0) out.push(`median ${plain(boxes.median[i], q.unit)}, quartiles ${plainRange(boxes.q1[i], boxes.q3[i], q.unit)}, ${boxes.outliers[i]} outliers in ${boxes.count[i]} windows`);
   return out.join('\n');
 }
 const seconds = us => us / 1e6;
@@ -64,6 +70,7 @@ let strip = null; // factor and unit of the chosen element
 
 function choose(i) {
   chosen = i;
+  saveLayout({element: plan.parameters[i].name});
   $('element').value = i;
   building.chosen = Math.max(0, building.faces.findIndex(f => f.i === i));
   strips.k.clear(); strips.drift.clear();
@@ -85,27 +92,43 @@ function start(json) {
   building = new Building($('building'), plan, choose);
   boxPlots = [['box-k', 0], ['box-g', 1], ['box-c', 2], ['box-d', 3]].map(([id, kind]) => new Boxes($(id), plan, kind, choose));
   const top = plan.axes.findIndex(a => a.story === plan.stories), rate = plan.rate_hz, parent = $('strips');
-  $('channel').value = top;
+  const kept = plan.axes.findIndex(a => a.name === layout.channel);
+  $('channel').value = kept < 0 ? top : kept;
   strips.accel = new Strip(parent, 'acceleration, m/s²', 'Absolute acceleration of the chosen channel and of the base, calibrated.', [{name: 'channel', color: 'blue'}, {name: 'base', color: 'orange', width: 1}], 10, rate);
   strips.drift = new Strip(parent, 'story drift, mm', 'Displacement of the floor above less that below in the frame, by two leaky integrations for the eye; the estimator integrates nothing.', [{name: 'drift', color: 'purple'}], 10, rate);
   strips.k = new Strip(parent, 'stiffness', 'The newest window\'s value with one standard error to either side; baseline dashed.', [{name: 'value', color: 'blue', width: 2}, {name: '+ error', color: 'blue', width: 0.5}, {name: '- error', color: 'blue', width: 0.5, band: true}, {name: 'baseline', color: 'soft', dash: [5, 4]}], 300, 4);
   strips.excitation = new Strip(parent, 'excitation: rms of the base over a second, m/s²', 'Without excitation nothing can be identified.', [{name: 'base rms', color: 'green'}], 300, 4);
   strips.residual = new Strip(parent, 'residual over response', 'Part of the measured response that the identified model does not explain in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
+  signals = new Signals();
   startSession();
-  choose(0);
+  choose(Math.max(0, plan.parameters.findIndex(q => q.name === layout.element)));
   const bar = document.createElement('canvas');
   bar.id = 'bar'; bar.width = 160; bar.height = 14; bar.style.width = '160px'; bar.setAttribute('aria-hidden', 'true');
   const text = t => { const s = document.createElement('span'); s.textContent = t; return s; };
-  $('scale').replaceChildren(text('−15 %, softer'), bar, text('+15 %, stiffer than the baseline (without one: than the design); paler: the last value; hatched: never had one'));
+  const ends = text('−15 % softer');
+  ends.append(bar, '+15 % stiffer');
+  $('scale').replaceChildren(ends, text(' than the baseline; gray: as the baseline, or it has none yet; paler: the last value; hatched: never had one'));
   applyTheme();
   boxButton();
-  fetch('history.json').then(r => r.ok ? r.json() : null).catch(() => null).then(before).finally(listen);
+  if (startPlayback()) listen();
+  else fetch('history.json').then(r => r.ok ? r.json() : null).catch(() => null).then(before).finally(listen);
   requestAnimationFrame(draw);
 }
 function applyTheme() {
   const g = $('bar') && $('bar').getContext('2d');
   if (g) for (let x = 0; x < 160; x++) { g.fillStyle = ratioColor(1 + kFullColor * (x / 80 - 1), theme()); g.fillRect(x, 0, 1, 14); }
   for (const s of Object.values(strips)) { s.make(); s.fresh = true; }
+  if (signals) signals.make();
+}
+// Forgets all that was shown, for another time of a recorded session.
+function forget() {
+  known = []; rms = []; past.length = 0; alarms.clear();
+  estimate = boxes = fit = undefined; baseline = [];
+  told = {answers: [], findings: [], drift: []};
+  lastRow = null; lastMotion = 0;
+  building.begin(); building.largest = 1e-6; building.ratio = []; building.known = [];
+  for (const s of Object.values(strips)) s.clear();
+  signals.clear();
 }
 // Loads the history before the page was opened.
 function before(history) {
@@ -138,7 +161,7 @@ let rms = [], resumed = false;
 function onMotion(m) {
   if (resumed) { lastRow = null; resumed = false; } // the moment between history and stream is no loss
   takeMotion(m);
-  lastMotion = performance.now();
+  lastMotion = now_ms();
   pending = lastRow;
 }
 function takeMotion(m) {
@@ -155,13 +178,16 @@ function takeMotion(m) {
     strips.accel.push([t, accel[axis], accel[base]]);
     const d = building.drift(chosen);
     strips.drift.push([t, d === null ? null : d * 1e3]);
+    signals.row(t, accel);
     const b = accel[base];
     if (b !== null && b !== undefined) { rms.push(b); if (rms.length > plan.rate_hz) rms.shift(); }
   }
   window.framewatch.leftOut = m.left_out;
   window.framewatch.motion = m;
   const mean = rms.reduce((a, b) => a + b, 0) / (rms.length || 1);
-  strips.excitation.push([seconds(lastRow), Math.sqrt(rms.reduce((a, b) => a + (b - mean) ** 2, 0) / (rms.length || 1))]);
+  const excitation = Math.sqrt(rms.reduce((a, b) => a + (b - mean) ** 2, 0) / (rms.length || 1));
+  strips.excitation.push([seconds(lastRow), excitation]);
+  signals.value('rms', seconds(lastRow), excitation);
 }
 // Creates the strip of the gap when the first gap arrives.
 function onGap(g) {
@@ -169,6 +195,7 @@ function onGap(g) {
   if (!strips.gap) strips.gap = new Strip($('strips'), 'gap', 'Part of the measurement that a simulation with the identified values does not explain, rms over rms: of all channels, of the chosen one, and the least that sensor noise allows.', [{name: 'all channels', color: 'orange', width: 2}, {name: 'chosen channel', color: 'blue'}, {name: 'noise floor', color: 'soft', dash: [5, 4]}], 300, 4);
   const i = g.name.indexOf(plan.axes[+$('channel').value].name);
   strips.gap.name('gap between simulation and measurement' + (i < 0 ? '' : `, ${g.name[i]}`));
+  signals.value('gap', seconds(g.end_us), g.overall);
   strips.gap.push([seconds(g.end_us), g.overall, i < 0 ? null : g.nrmse[i], g.noise_floor]);
 }
 let pending = null;
@@ -186,6 +213,7 @@ function remember(e) {
   past.push(e);
   if (past.length > 1200) past.shift();
   pushStiffness(e);
+  signals.estimate(e);
 }
 function onLast(l) {
   l.index.forEach((i, k) => { if (!known[i] || known[i].us < l.end_us[k]) known[i] = {value: l.value[k], error: l.error[k], us: l.end_us[k]}; });
@@ -202,14 +230,20 @@ function colour() {
     const f = findingOf(q.name);
     building.known[i] = known[i] !== undefined;
     building.old[i] = !isNow(i);
-    if (known[i]) building.ratio[i] = f ? 1 + f.ratio : reference(i) ? known[i].value / reference(i) : 1;
+    if (known[i]) building.ratio[i] = f ? 1 + f.ratio : baseline[i] ? known[i].value / baseline[i] : 1;
   });
 }
-function cell(row, text, name) { const td = row.insertCell(); td.textContent = text; if (name) td.className = name; return td; }
+// Narrow screens show the column's title in each cell.
+function cell(row, text, name) {
+  const td = row.insertCell(), head = row.closest('table').tHead;
+  td.textContent = text; if (name) td.className = name;
+  if (head && head.rows[0].cells[td.cellIndex].textContent) td.dataset.label = head.rows[0].cells[td.cellIndex].textContent;
+  return td;
+}
 function heads(table, names) { const row = table.createTHead().insertRow(); for (const n of names) { const th = document.createElement('th'); th.textContent = n; row.append(th); } }
 function onAlarm(a) {
   const at = plan.parameters.findIndex(q => q.name === a.place);
-  if (a.state !== 0 && !a.acknowledged && !alarms.has(a.id) && at >= 0) choose(at);
+  if (a.state !== 0 && !a.acknowledged && !alarms.has(a.id) && at >= 0 && !playback) choose(at);
   if (a.unit === '%' && a.value !== null) Object.assign(a, {value: a.value / 100, error: a.error === null ? null : a.error / 100, unit: 'ratio'});
   a.told = a.unit !== 'ratio' || a.value === null || a.error === null;  // by its message alone
   alarms.set(a.id, a);
@@ -247,17 +281,21 @@ function onRefused(r) {
   showRefusal(r.answered);
 }
 function showRefusal(id) { if (ours.has(id) && refusals.has(id)) warn('Refused: ' + refusals.get(id)); }
+const handlers = {
+  motion: onMotion, estimate: onEstimate, late: onLate, status: onStatus, alarm: onAlarm, session: onSession, gap: onGap, can: onCan, refused: onRefused,
+  boxes: b => { boxes = window.framewatch.boxes = b; }, fit: f => { fit = f; }, answers: onAnswers, last: onLast, baseline: b => { baseline = b.value; },
+  dropped: d => { window.framewatch.dropped = d.events; }, alive: () => {},
+};
+// Events that do not belong to the time of a recorded session.
+const ofNow = {session: true, refused: true, dropped: true, alive: true};
 function listen() {
   const source = new EventSource('events');
-  const on = (name, f) => source.addEventListener(name, e => { lastAlive = performance.now(); f(JSON.parse(e.data)); });
-  on('motion', onMotion); on('estimate', onEstimate); on('late', onLate); on('status', onStatus); on('alarm', onAlarm);
-  on('session', onSession); on('gap', onGap); on('can', onCan); on('refused', onRefused);
-  on('boxes', b => { boxes = window.framewatch.boxes = b; });
-  on('fit', f => { fit = f; });
-  on('answers', onAnswers); on('last', onLast);
-  on('baseline', b => { baseline = b.value; });
-  on('dropped', d => { window.framewatch.dropped = d.events; });
-  on('alive', () => {});
+  for (const name of Object.keys(handlers))
+    source.addEventListener(name, e => {
+      lastAlive = performance.now();
+      const handle = !playback || ofNow[name] ? handlers[name] : name === 'answers' ? showNow : null;
+      if (handle) handle(JSON.parse(e.data));
+    });
   source.onopen = () => { lastAlive = performance.now(); };
   // A refusal (too many viewers) ends an EventSource for good.
   source.onerror = () => { if (source.readyState === EventSource.CLOSED) setTimeout(listen, 5000); };
@@ -267,12 +305,14 @@ function draw() {
   const now = performance.now();
   frames.push(now);
   while (frames[0] < now - 1000) frames.shift();
+  if (playback) playback.step(now);
   building.draw();
   for (const s of Object.values(strips)) s.draw();
+  signals.draw(now);
   if (now - (draw.slow || 0) > 200) { draw.slow = now; slow(now); }
   if (pending !== null) {
     const ms = Date.now() - pending / 1e3;
-    if (Math.abs(ms) < 1e4) { window.framewatch.latency.push(ms); if (window.framewatch.latency.length > 600) window.framewatch.latency.shift(); }
+    if (Math.abs(ms) < 1e4 && !playback) { window.framewatch.latency.push(ms); if (window.framewatch.latency.length > 600) window.framewatch.latency.shift(); }
     pending = null;
   }
   requestAnimationFrame(draw);
@@ -286,6 +326,7 @@ function slow(now) {
   say2($('chosen'), [name, ...rest].join('; '));
   if (now - (slow.table || 0) > 1000) { slow.table = now; valueTable(); }
   if (now - lastAlive > 3000) say('no connection to the server', 'dead');
+  else if (playback) say('a recorded session', 'record');
   else if (lastMotion === 0) say('waiting for samples', 'wait');
   else if (now - lastMotion > kSilence_ms) say(`no samples for ${span((now - lastMotion) / 1e3)}`, 'dead');
   else if (deadChannels().size) say(`live, but ${deadChannels().size} of ${plan.axes.length} sensors not good`, 'amber');
@@ -301,8 +342,9 @@ root.dataset.theme = localStorage.getItem('theme') || (matchMedia('(prefers-colo
 $('theme').onclick = () => { useTheme(root.dataset.theme === 'dark' ? 'light' : 'dark'); localStorage.setItem('theme', root.dataset.theme); };
 // Redraws the canvases in light colors for printing.
 let screenTheme = null;
-addEventListener('beforeprint', () => { screenTheme = root.dataset.theme; useTheme('light'); building.draw(); for (const b of boxPlots) b.draw(); for (const s of Object.values(strips)) s.draw(); });
-addEventListener('afterprint', () => { if (screenTheme) useTheme(screenTheme); });
+function redraw() { building.draw(); for (const b of boxPlots) b.draw(); for (const s of Object.values(strips)) s.draw(); signals.drawn = 0; signals.draw(performance.now()); }
+addEventListener('beforeprint', () => { screenTheme = root.dataset.theme; printWidth = kPaper_px; useTheme('light'); redraw(); });
+addEventListener('afterprint', () => { printWidth = 0; if (screenTheme) useTheme(screenTheme); redraw(); });
 function zoneButton() { $('zone').textContent = zone === 'UTC' ? 'Times: UTC' : 'Times: local'; }
 $('zone').onclick = () => {
   zone = zone === 'UTC' ? 'local' : 'UTC';
@@ -317,7 +359,7 @@ $('values').addEventListener('toggle', () => plan && valueTable());
 $('baseline').onclick = () => $('ask-baseline').showModal();
 $('ask-baseline').addEventListener('close', () => { if ($('ask-baseline').returnValue === 'yes') post('baseline'); $('ask-baseline').returnValue = ''; });
 $('element').onchange = e => choose(+e.target.value);
-$('channel').onchange = () => { strips.accel.clear(); if (strips.gap) strips.gap.clear(); };
+$('channel').onchange = () => { saveLayout({channel: plan.axes[+$('channel').value].name}); strips.accel.clear(); if (strips.gap) strips.gap.clear(); };
 document.querySelectorAll('.why').forEach(b => {
   b.setAttribute('aria-label', 'What is this? ' + b.dataset.why);
   const show = () => { const r = b.getBoundingClientRect(); showTip(b.dataset.why, r.left, r.bottom); };
@@ -327,4 +369,5 @@ document.querySelectorAll('.why').forEach(b => {
 document.addEventListener('keydown', e => { if (e.key === 'Escape') hideTip(); });
 $('building').addEventListener('pointerleave', hideTip);
 document.querySelectorAll('#boxes-card canvas').forEach(c => c.addEventListener('pointerleave', hideTip));
+startLayout();
 fetch('building.json').then(r => r.ok ? r.json() : Promise.reject(r.statusText)).then(start).catch(e => say('cannot start: ' + e, 'dead'));

@@ -73,7 +73,10 @@ async function loadSessions() {
     cell(row, s.session);
     cell(row, s.test); cell(row, s.operator); cell(row, s.seconds.toFixed(1));
     cell(row, s.problems.length ? `${s.state}, ${s.problems.length} to know` : s.state).title = s.problems.join('\n');
-    const last = row.insertCell();
+    const last = row.insertCell(), play = document.createElement('button');
+    play.textContent = 'Play'; play.setAttribute('aria-label', `Play ${s.session}`); play.disabled = s.state === 'recording';
+    play.onclick = () => { location.hash = 'session=' + encodeURIComponent(s.session); };
+    last.append(play, ' ');
     if (!s.report) continue;
     const link = document.createElement('a');
     link.href = `session/${encodeURIComponent(s.session)}/report.html`; link.textContent = 'report'; link.target = '_blank'; link.rel = 'noopener';

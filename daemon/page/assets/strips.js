@@ -60,7 +60,7 @@ class Strip {
     this.fresh = true;
   }
   draw() {
-    const width = Math.max(200, this.box.clientWidth);
+    const width = printWidth ? printWidth / 2 : Math.max(200, this.box.clientWidth);
     if (Math.abs(this.plot.width - width) > 2) this.plot.setSize({width, height: 150});
     if (!this.fresh) return;
     this.fresh = false;

@@ -38,6 +38,7 @@ function withError(value, error, unit) {
   return `${v.toFixed(places)} ± ${s.toFixed(places)} ${e.unit}`;
 }
 function plain(value, unit) { const e = engineering(value, unit); return `${digits(value * e.factor, 4)} ${e.unit}`; }
+function plainRange(low, high, unit) { const e = engineering(high, unit); return `${digits(low * e.factor, 4)} to ${digits(high * e.factor, 4)} ${e.unit}`; }
 function percent(ratio, error) {
   const places = error > 0 ? Math.min(2, Math.max(0, Math.ceil(-Math.log10(100 * error)))) : 1;
   return (ratio < 0 ? '−' : '+') + Math.abs(100 * ratio).toFixed(places) + ' %';

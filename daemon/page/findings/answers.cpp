@@ -267,7 +267,7 @@ Answer to_do(const Known& k) {
     out.line.text = !k.samples             ? "Start framewatch run and the source of the samples."
                     : k.with_baseline == 0 ? "Wait until the baseline is learned."
                                            : "Nothing.";
-    out.state = k.samples ? AnswerState::good : AnswerState::wait;
+    out.state = k.samples && k.with_baseline > 0 ? AnswerState::good : AnswerState::wait;
     return out;
   }
   out.line.text = capitalized(steps.front());

@@ -41,6 +41,7 @@ class LiveView {
 
   /// Loads stored estimates, events and samples. Call it before message(). now_us: host clock.
   void restore(const StoredHistory& stored, std::int64_t now_us);
+  const Config& config() const { return config_; }
   /// Returns the LCM channels to subscribe to.
   std::vector<std::string> channels() const;
   /// Takes one LCM message. Ignores other channels and malformed payloads. received_us: host clock.

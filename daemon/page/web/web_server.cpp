@@ -15,6 +15,7 @@
 
 #include "daemon/base/served_file.h"
 #include "daemon/page/view/live_view.h"
+#include "daemon/page/web/session_playback.h"
 #include "daemon/page/web/web_answer.h"
 #include "daemon/page/web/web_files.h"
 #include "daemon/page/web/web_sessions.h"
@@ -27,9 +28,12 @@ namespace {
 constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 constexpr const char* kJson = "application/json";
 constexpr const char* kSessionPath = "/session/";
+constexpr const char* kPlayback = "/playback";
 constexpr const char* kEventReportPath = "/event-report/";
 constexpr std::size_t kBlock = 32768;
-constexpr int kOtherDescriptors = 64;  // LCM, the history's files, logs
+constexpr int kMaxPlaybacks = 4;                 // at once: each decodes a log
+constexpr std::size_t kPlaybackBytes = 4 << 20;  // of memory, for the limits of answers
+constexpr int kOtherDescriptors = 64;            // LCM, the history's files, logs
 
 const char* type_of(const std::string& path) {
   return path.ends_with(".js")    ? "text/javascript; charset=utf-8"
@@ -135,6 +139,7 @@ class WebServer::Implementation {
       return text(
           c, settings_.event_reports.empty() ? "null" : event_reports_json(settings_.event_reports),
           kJson);
+    if (path.starts_with(kSessionPath) && path.ends_with(kPlayback)) return play(c, path);
     if (path.starts_with(kSessionPath))
       return report(c,
                     session_document(settings_.sessions, path.substr(std::strlen(kSessionPath))));
@@ -240,6 +245,41 @@ class WebServer::Implementation {
     viewer->server->waiting_.erase(viewer->connection);
   }
 
+  /// A session that a viewer plays.
+  struct Player {
+    Implementation* server;
+    std::unique_ptr<SessionPlayback> playback;
+  };
+
+  MHD_Result play(MHD_Connection* c, const std::string& path) {
+    const std::size_t from = std::strlen(kSessionPath);
+    const std::string name = path.substr(from, path.size() - from - std::strlen(kPlayback));
+    if (playing_ >= kMaxPlaybacks)
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE,
+                   "too many sessions are being played: try again later");
+    std::string why;
+    auto playback = SessionPlayback::open(view_.config(), settings_.sessions, name, why);
+    if (!playback) return plain(c, MHD_HTTP_CONFLICT, why);
+    auto player = std::make_unique<Player>(Player{this, std::move(playback)});
+    MHD_Response* response = MHD_create_response_from_callback(
+        MHD_SIZE_UNKNOWN, kBlock,
+        [](void* of, std::uint64_t, char* buffer, std::size_t size) {
+          const std::size_t copied = static_cast<Player*>(of)->playback->read(buffer, size);
+          return copied == 0 ? MHD_CONTENT_READER_END_OF_STREAM : static_cast<ssize_t>(copied);
+        },
+        player.get(),
+        [](void* of) {
+          const std::unique_ptr<Player> ended(static_cast<Player*>(of));
+          --ended->server->playing_;
+        });
+    if (!response) return MHD_NO;
+    ++playing_;
+    (void)player.release();  // the response owns it now
+    guard_.answered(socket_of(c), kPlaybackBytes);
+    MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
+    return send_answer(c, MHD_HTTP_OK, response);
+  }
+
   const WebSettings settings_;
   LiveView& view_;
   ConnectionGuard guard_;
@@ -247,6 +287,7 @@ class WebServer::Implementation {
   std::mutex mutex_;
   std::set<MHD_Connection*> waiting_;  ///< suspended until new events come
   std::atomic<bool> stopping_ = false;
+  int playing_ = 0;  ///< used by the thread of libmicrohttpd only
 };
 
 WebServer::WebServer(const WebSettings& settings, LiveView& view)

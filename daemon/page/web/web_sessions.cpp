@@ -22,16 +22,15 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kMaxShown = 200;
 
-/// Returns true for names that session_folder_name() makes, which cannot lead out of the folder.
+constexpr std::size_t kMaxReports = 50;
+
+}  // namespace
+
 bool is_session_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_';
   });
 }
-
-constexpr std::size_t kMaxReports = 50;
-
-}  // namespace
 
 std::string sessions_json(const std::string& folder) {
   std::vector<std::string> names;

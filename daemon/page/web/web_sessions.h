@@ -8,6 +8,9 @@
 
 namespace framewatch::daemon {
 
+/// Returns true for names that session_folder_name() makes, which cannot lead out of the folder.
+bool is_session_name(const std::string& name);
+
 /// Returns the newest 200 sessions of a folder, newest first, as JSON: [{"session", "test",
 /// "operator", "state", "began_us", "seconds", "problems", "report"}].
 std::string sessions_json(const std::string& folder);

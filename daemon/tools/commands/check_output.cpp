@@ -153,6 +153,7 @@ std::string to_json(const std::string& path, const std::optional<CheckReport>& r
         groups.push_back({{"parameter", g.parameter},
                           {"window_error_ratio", json_value(g.window_error)},
                           {"design_error_ratio", json_value(g.design_error)},
+                          {"sensor_error_ratio", json_value(g.sensor_error)},
                           {"damping_error_ratio", json_value(g.damping_error)}});
       for (const AdvisedFloor& a : layout.advised)
         advice.push_back(

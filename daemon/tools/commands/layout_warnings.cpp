@@ -48,24 +48,32 @@ std::vector<estimator::SensorAxis> copied_to(const estimator::PipelineConfig& c,
 
 /// An axis that is farther off the frames' directions measures both.
 constexpr double kOblique_deg = 15;
-/// Stories in this upper part of a building drift little: their drift is a small difference of two
-/// floors.
-constexpr double kNearRoof = 0.8;
 constexpr double kSameSpot_m = 0.01, kParallel_rad = 0.02;
 
 void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
                       std::vector<std::string>& out) {
   const estimator::PipelineConfig& c = config.pipeline;
-  for (const GroupOutlook& g : outlook.groups)
-    if (!std::isfinite(g.window_error))
+  // Judges every prediction on the scale of the gate.
+  const double most = c.options.max_error_k;
+  const auto poor = [&](const GroupOutlook& g, double error, const char* whose,
+                        const char* advice) {
+    if (error > most)
+      out.push_back(
+          fmt::format("{}: {} will put its value off by {:.2g} %, more than "
+                      "estimator.max_error_k_ratio = {:g} ({:g} %){}",
+                      g.parameter, whose, 100 * error, most, 100 * most, advice));
+  };
+  for (const GroupOutlook& g : outlook.groups) {
+    if (!std::isfinite(g.window_error)) {
       out.push_back(
           fmt::format("{}: these sensors cannot show it: no value will be published", g.parameter));
-    else if (!(g.window_error < c.options.max_error_k))
-      out.push_back(
-          fmt::format("{}: its standard error will be {:.2g} %, above estimator.max_error_k = {:g} "
-                      "%: under such "
-                      "shaking, no value will be shown",
-                      g.parameter, 100 * g.window_error, 100 * c.options.max_error_k));
+      continue;
+    }
+    poor(g, g.window_error, "noise", ": under such shaking, no value will be shown");
+    poor(g, g.design_error, "the design's tolerances", ": compare its values with each other only");
+    poor(g, g.sensor_error, "errors of gain and time",
+         ": its floors move nearly alike. Leave more stories between measured floors");
+  }
   for (const auto direction : {estimator::Direction::x, estimator::Direction::y}) {
     if ((direction == estimator::Direction::x ? c.structure.n() : c.structure.m()) == 0) continue;
     const bool measured =
@@ -78,25 +86,6 @@ void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
           "no channel above the base measures along {0}: the frames parallel to {0} are "
           "not identified, and their changes are not noticed",
           letter(direction)));
-  }
-}
-
-void single_stories_near_roof(const Config& config, const LayoutOutlook& outlook,
-                              std::vector<std::string>& out) {
-  const estimator::PipelineConfig& c = config.pipeline;
-  const estimator::ParameterTable table = c.parameters();
-  for (const GroupOutlook& g : outlook.groups) {
-    const std::optional<int> p = table.find(g.parameter);
-    if (!p || table[*p].kind != estimator::ParameterKind::frame_stiffness) continue;
-    const estimator::Parameter& group = table[*p];
-    if (group.story != group.last_story || group.story <= kNearRoof * c.structure.stories ||
-        !std::isfinite(g.window_error))
-      continue;
-    out.push_back(fmt::format(
-        "{}: a single story near the roof. Its two floors move nearly alike, so noise and small "
-        "errors of gain and time make up most of its drift. Do not trust its value; leave several "
-        "stories between measured floors",
-        g.parameter));
   }
 }
 
@@ -188,7 +177,7 @@ LayoutOutlook layout_outlook(const Config& config, int advise) {
     const bool stiffness = table[p].kind == estimator::ParameterKind::frame_stiffness;
     if (!stiffness && table[p].kind != estimator::ParameterKind::bending_stiffness) continue;
     out.groups.push_back(
-        {table[p].name, now.window_error[i], now.design_error[i],
+        {table[p].name, now.window_error[i], now.design_error[i], now.sensor_error[i],
          stiffness ? now.window_error[i + static_cast<std::size_t>(table.elements())] : NAN});
   }
   const Weakest place = weakest(now, c);
@@ -220,18 +209,19 @@ std::string layout_text(const LayoutOutlook& o, const estimator::Structure& s) {
   std::string out = fmt::format(
       "identifiable groups of stories between the measured floors {} of {} (docs/partial.md)\n"
       "            expected while the base shakes with {:g} m/s2 rms, sensors' noise {}:\n"
-      "            {:<16} {:>14} {:>17} {:>14}\n",
+      "            {:<16} {:>14} {:>17} {:>14} {:>14}\n",
       fmt::join(o.floors, ", "), s.stories, o.shaking_mps2,
       o.noise_configured ? "as configured" : "1e-4 m/s2/rtHz", "stiffness", "+- one window",
-      "+- by the design", "+- damping");
+      "+- by the design", "+- by sensors", "+- damping");
   for (const GroupOutlook& g : o.groups)
-    out += fmt::format("            {:<16} {:>14} {:>17} {:>14}\n", g.parameter,
-                       or_dash(100 * g.window_error, "{:.2g} %"),
-                       or_dash(100 * g.design_error, "{:.2g} %"),
-                       or_dash(100 * g.damping_error, "{:.2g} %"));
+    out += fmt::format(
+        "            {:<16} {:>14} {:>17} {:>14} {:>14}\n", g.parameter,
+        or_dash(100 * g.window_error, "{:.2g} %"), or_dash(100 * g.design_error, "{:.2g} %"),
+        or_dash(100 * g.sensor_error, "{:.2g} %"), or_dash(100 * g.damping_error, "{:.2g} %"));
   out +=
       "            by the design: error if the stories' shares of their group are wrong by 5 % and "
-      "masses by 2 %; it is the same in every window\n";
+      "masses by 2 %; by sensors: if gains are wrong by 0.2 % and clocks by 0.1 ms. Both are the "
+      "same in every window\n";
   if (o.least_seen_loss < kNeverSeen)
     out += fmt::format(
         "            with this noise, the loss of {} of one story's stiffness is seen in every "
@@ -252,7 +242,6 @@ std::vector<std::string> layout_warnings(const Config& config, const LayoutOutlo
   std::vector<std::string> out;
   groups_not_shown(config, outlook, out);
   free_top(config, outlook, out);
-  single_stories_near_roof(config, outlook, out);
   contradictions(config, out);
   oblique(config, out);
   for (const UnusedChannel& unused : config.unused)

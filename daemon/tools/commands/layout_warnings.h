@@ -11,7 +11,7 @@ namespace framewatch::daemon {
 /// Expected accuracy of a group of stories, relative.
 struct GroupOutlook {
   std::string parameter;  ///< kx_6to10
-  double window_error, design_error, damping_error;
+  double window_error, design_error, sensor_error, damping_error;
 };
 
 /// A further measured floor and its gain.

@@ -27,7 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr double kMissing_s = 2;  // after so long without an estimate they are computed again
-constexpr const char* kReplayed = "estimates-replayed.lcmlog";
 
 class Finishing {
  public:
@@ -74,12 +73,12 @@ class Finishing {
     ReplayArguments again;
     again.config = a_.config;
     again.inputs = raw_;
-    again.out = a_.folder + "/" + kReplayed;
+    again.out = a_.folder + "/" + kReplayedLog;
     again.salvage = again.quiet = true;
     if (replay(again) != 0) return problem(missing + ", and replay cannot compute them");
-    read_estimates(kReplayed);
-    session_.files.push_back(kReplayed);
-    note(missing + fmt::format(": computed again from the raw samples, {}", kReplayed));
+    read_estimates(kReplayedLog);
+    session_.files.push_back(kReplayedLog);
+    note(missing + fmt::format(": computed again from the raw samples, {}", kReplayedLog));
   }
 
   void write_report() {

@@ -46,6 +46,8 @@ class MessageRing {
 inline constexpr const char* kRawLog = "raw.lcmlog";
 inline constexpr const char* kCanLog = "raw.can.log";
 inline constexpr const char* kEstimatesLog = "estimates.lcmlog";
+/// Estimates computed again from the raw log, where those of kEstimatesLog are missing.
+inline constexpr const char* kReplayedLog = "estimates-replayed.lcmlog";
 inline constexpr const char* kSessionJson = "session.json";
 inline constexpr const char* kReportPage = "report.html";
 

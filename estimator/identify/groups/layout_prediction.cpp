@@ -53,10 +53,12 @@ std::vector<Frequency> frequencies(const ExpectedShaking& shaking) {
 class Prediction {
  public:
   Prediction(const PipelineConfig& config, const std::vector<double>& noise_density,
-             const ExpectedShaking& shaking, const DesignTolerance& tolerance)
+             const ExpectedShaking& shaking, const DesignTolerance& tolerance,
+             const SensorTolerance& sensors)
       : config_(config),
         table_(config.parameters()),
         tolerance_(tolerance),
+        sensors_(sensors),
         design_(story_design(config)) {
     const std::vector<std::uint8_t> all = identifying(config.axes);
     building_ = reduced_building(config.structure, config.axes, table_, design_, all);
@@ -75,6 +77,7 @@ class Prediction {
     const auto dofs = static_cast<std::size_t>(config_.structure.degrees_of_freedom());
     LayoutPrediction out{std::vector<double>(parameters, kNaN),
                          std::vector<double>(parameters, kNaN),
+                         std::vector<double>(parameters, kNaN),
                          std::vector<double>(dofs, std::numeric_limits<double>::infinity()),
                          {},
                          {}};
@@ -89,6 +92,7 @@ class Prediction {
     for (Index i = 0; i < p; ++i)
       out.window_error[static_cast<std::size_t>(i)] = std::sqrt(covariance(i, i));
     add_design_error(sensitivity, out);
+    add_sensor_error(inverse * misread_, out);
     add_changes(sensitivity, out);
     for (std::size_t dof = 0; dof < dofs; ++dof)
       for (Index i = 0; i < table_.elements(); ++i)
@@ -129,7 +133,10 @@ class Prediction {
     information_ = scores_ = MatrixXd::Zero(p, p);
     mismatch_ =
         MatrixXd::Zero(p, config_.structure.degrees_of_freedom() + config_.structure.stories);
+    misread_ = MatrixXd::Zero(p, 2 * building_.from_axes.cols());
     if (building_.rows() == 0) return;
+    const MatrixXd& from = building_.from_axes;
+    read_ = Ldlt(MatrixXd(from * from.transpose())).solve(from).transpose();
     MatrixXd noise = MatrixXd::Zero(building_.measured, building_.measured);
     for (std::size_t a = 0; a < noise_density.size(); ++a) {
       const Eigen::VectorXd from = building_.from_axes.col(static_cast<Index>(a));
@@ -230,6 +237,12 @@ class Prediction {
               rows(f, f.motion.transpose() * (building_.parts[static_cast<std::size_t>(i)] * all));
       information_ += of_ground * (h.adjoint() * h).real();
       mismatch_ += of_ground * (h.adjoint() * other).real();
+      const Eigen::VectorXcd readings = read_ * motion.col(input);
+      const MatrixXcd off = f.residual * building_.from_axes * readings.asDiagonal();
+      misread_ +=
+          of_ground * (MatrixXcd(p, 2 * off.cols()) << h.adjoint() * off, s * (h.adjoint() * off))
+                          .finished()
+                          .real();
       const MatrixXcd noisy = h.adjoint() * f.residual;
       scores_ += of_ground * config_.options.rate_hz / 2 * (noisy * noise * noisy.adjoint()).real();
     }
@@ -301,9 +314,21 @@ class Prediction {
       out.design_error[static_cast<std::size_t>(i)] = std::sqrt(variance[i]);
   }
 
+  /// sensitivity: of the parameters to gains and times (s) of the axes. Errors that all axes have
+  /// in common cancel.
+  void add_sensor_error(const MatrixXd& sensitivity, LayoutPrediction& out) const {
+    const Index axes = sensitivity.cols() / 2;
+    const Eigen::VectorXd variance =
+        std::pow(sensors_.gain, 2) * sensitivity.leftCols(axes).rowwise().squaredNorm() +
+        std::pow(sensors_.time_s, 2) * sensitivity.rightCols(axes).rowwise().squaredNorm();
+    for (Index i = 0; i < variance.size(); ++i)
+      out.sensor_error[static_cast<std::size_t>(i)] = std::sqrt(variance[i]);
+  }
+
   const PipelineConfig& config_;
   ParameterTable table_;
   DesignTolerance tolerance_;
+  SensorTolerance sensors_;
   GroupDesign design_;
   ReducedBuilding building_;
   FloorRows rows_;
@@ -312,15 +337,17 @@ class Prediction {
   std::vector<int> of_group_;  ///< stiffness parameter of every frame story, or -1
   Eigen::VectorXd rate_;       ///< damping over stiffness of every frame story, s
   Eigen::VectorXd weights_;
-  MatrixXd information_, scores_, mismatch_;
+  MatrixXd read_;  ///< axes x measured coordinates
+  MatrixXd information_, scores_, mismatch_, misread_;
 };
 
 }  // namespace
 
 LayoutPrediction predict_layout(const PipelineConfig& config,
                                 const std::vector<double>& noise_density,
-                                const ExpectedShaking& shaking, const DesignTolerance& tolerance) {
-  return Prediction(config, noise_density, shaking, tolerance).result();
+                                const ExpectedShaking& shaking, const DesignTolerance& tolerance,
+                                const SensorTolerance& sensors) {
+  return Prediction(config, noise_density, shaking, tolerance, sensors).result();
 }
 
 }  // namespace framewatch::estimator

@@ -23,12 +23,18 @@ struct DesignTolerance {
   double mass = 0.02;     ///< of a floor's mass
 };
 
+/// Relative standard deviations of a sensor that meets the limits of README.md.
+struct SensorTolerance {
+  double gain = 0.002;
+  double time_s = 1e-4;  ///< of its clock
+};
+
 /// The expected performance of a layout of few sensors, before a sensor is bought.
 struct LayoutPrediction {
   /// By parameter (config.parameters()), relative. window_error: standard error of one window due
-  /// to sensor noise. design_error: constant error of a design that is off by its tolerance. NaN:
-  /// not identified.
-  std::vector<double> window_error, design_error;
+  /// to sensor noise. design_error: constant error of a design that is off by its tolerance.
+  /// sensor_error: constant error of sensors that are off by theirs. NaN: not identified.
+  std::vector<double> window_error, design_error, sensor_error;
   /// By frame story (Structure::dof), relative: loss of stiffness that changes a group by four
   /// standard errors of a difference of two windows. Infinite: cannot be detected.
   std::vector<double> smallest_loss;
@@ -40,10 +46,12 @@ struct LayoutPrediction {
 };
 
 /// Predicts a layout. config: of a building in groups. noise_density: of every axis,
-/// m/s^2/sqrt(Hz), > 0. Source: docs/equations.md (53) and (54).
+/// m/s^2/sqrt(Hz), > 0. Source: docs/equations.md (53) and
+/// (54).
 LayoutPrediction predict_layout(const PipelineConfig& config,
                                 const std::vector<double>& noise_density,
                                 const ExpectedShaking& shaking,
-                                const DesignTolerance& tolerance = {});
+                                const DesignTolerance& tolerance = {},
+                                const SensorTolerance& sensors = {});
 
 }  // namespace framewatch::estimator

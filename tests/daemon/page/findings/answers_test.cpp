@@ -79,6 +79,11 @@ TEST_F(AnswersTest, SaysNothingBeforeSamplesCome) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(answer(i).state, AnswerState::wait) << said(i);
 }
 
+TEST_F(AnswersTest, JudgesNothingBeforeThereIsABaseline) {
+  known_.with_baseline = 0;
+  for (const std::size_t i : {0u, 3u}) EXPECT_EQ(answer(i).state, AnswerState::wait) << said(i);
+}
+
 TEST_F(AnswersTest, AChangeHasItsEventNumber) {
   find(event_of("stiffness_change", "kx_1_y2", severity::alarm), -14.83, 0.41);
   const Answer changed = answer(0);

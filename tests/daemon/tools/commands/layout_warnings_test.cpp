@@ -96,10 +96,45 @@ TEST(LayoutWarnings, NameARoofWithoutAChannel) {
   EXPECT_TRUE(warns(r, "no channel on the roof, floor 10")) << all_of(r);
 }
 
-TEST(LayoutWarnings, NameSingleStoriesNearTheRoof) {
-  const CheckReport r = checked(level(0) + level(1) + level(5) + level(9) + level(10));
-  EXPECT_TRUE(warns(r, "kx_10_y1: a single story near the roof")) << all_of(r);
-  EXPECT_FALSE(warns(r, "kx_1_y1"));
+TEST(LayoutWarnings, NameOnlyGroupsWhoseErrorIsLarge) {
+  // A single story below the roof of ten is predicted to 3 %, of forty only to 30 %.
+  const std::string ten = building(level(0) + level(1) + level(5) + level(9) + level(10));
+  const CheckReport low = make_check_report(test::good(ten), 0);
+  EXPECT_FALSE(warns(low, "_10")) << all_of(low);
+  const std::string forty = test::replaced(building(level(0) + level(10) + level(39) + level(40)),
+                                           "stories = 10", "stories = 40");
+  const CheckReport high = make_check_report(test::good(forty), 0);
+  EXPECT_TRUE(warns(high, "kx_40_y1: the design's tolerances will put its value off by"))
+      << all_of(high);
+  EXPECT_FALSE(warns(high, "39")) << all_of(high);
+  const auto at_limit = [&](const char* limit) {
+    return make_check_report(
+        test::good(test::replaced(forty, "[estimator]",
+                                  std::string("[estimator]\nmax_error_k_ratio = ") + limit)),
+        0);
+  };
+  EXPECT_TRUE(warns(at_limit("0.05"), "kx_40_y1: errors of gain and time will put its value off"));
+  EXPECT_FALSE(warns(at_limit("0.5"), "kx_40_y1"));
+}
+
+TEST(LayoutWarnings, AreAbsentForALaboratoryTable) {
+  std::string table = level(0) + level(1) + level(2) + level(3);
+  for (std::size_t at = 0; (at = table.find("x_m = 20", at)) != std::string::npos;)
+    table.replace(at, 8, "x_m = 0.5");
+  table = building(table);
+  for (const auto& [what, by] :
+       {std::pair{"stories = 10", "stories = 3"}, std::pair{"[20.0]", "[0.5]"},
+        std::pair{"= 3.5", "= 0.3"}, std::pair{"400e3", "2.5"}, std::pair{"2e9", "9e3"},
+        std::pair{"1e9", "9e3"}})
+    table = test::replaced(table, what, by);
+  const CheckReport r = make_check_report(test::good(table), 0);
+  ASSERT_TRUE(r.layout);
+  EXPECT_EQ(all_of(r), "");
+  for (const GroupOutlook& g : r.layout->groups) {
+    EXPECT_LT(g.window_error, 0.001) << g.parameter;
+    EXPECT_GT(g.sensor_error, 0.001) << g.parameter;
+    EXPECT_LT(g.sensor_error, 0.02) << g.parameter;
+  }
 }
 
 TEST(LayoutWarnings, NameTwoChannelsThatMeasureTheSameMotion) {

@@ -115,6 +115,53 @@ TEST(GroupAccuracy, IsPredictedFromTheDesign) {
   EXPECT_NEAR(std::exp(damping), 1, 0.3);
 }
 
+/// Returns the mean of every parameter over the windows from 20 s on.
+Eigen::VectorXd mean_values(const PipelineConfig& config, const Eigen::MatrixXd& accel) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(config.parameters().size());
+  const std::vector<WindowEstimate> windows = daemon::run_windows(config, accel, 20, 5);
+  for (const WindowEstimate& w : windows)
+    sum += Eigen::Map<const Eigen::VectorXd>(w.solution.data(), sum.size());
+  return sum / static_cast<double>(windows.size());
+}
+
+TEST(GroupAccuracy, ErrorsOfGainAndTimeArePredicted) {
+  // Of the groups whose error is large, and of the others.
+  constexpr double kGain = 0.002, kTime_s = 1e-4, kNear = 1.3, kRough = 2.2;
+  TallTrial trial;
+  trial.floors = {5, 18, 19, 20};  // the last two move nearly alike
+  trial.stiffness_off = trial.damping_off = 0;
+  trial.noise_ratio = 1e-4;
+  TallRecord record = tall_record(trial);
+  record.config.options.self_tune = false;
+  std::vector<double> noise;
+  for (const SensorAxis& axis : record.config.axes) noise.push_back(axis.noise_density);
+  const Eigen::Index rows = record.accel.rows();
+  const double per_step = record.config.options.rate_hz / 2;
+  for (const bool gain : {true, false}) {
+    const Eigen::VectorXd right = mean_values(record.config, record.accel);
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(right.size());
+    for (Eigen::Index a = 0; a < record.accel.cols(); ++a) {
+      Eigen::MatrixXd wrong = record.accel;
+      if (gain)
+        wrong.col(a) *= 1 + kGain;
+      else  // the first term of a delay
+        wrong.col(a).segment(1, rows - 2) +=
+            kTime_s * per_step *
+            (record.accel.col(a).tail(rows - 2) - record.accel.col(a).head(rows - 2));
+      squares +=
+          (mean_values(record.config, wrong).cwiseQuotient(right).array() - 1).matrix().cwiseAbs2();
+    }
+    const LayoutPrediction p =
+        predict_layout(record.config, noise, {}, {}, {gain ? kGain : 0, gain ? 0 : kTime_s});
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double found = std::sqrt(squares[static_cast<Eigen::Index>(i)]);
+      const double factor = i < 2 ? kRough : kNear;
+      EXPECT_LT(p.sensor_error[i], factor * found) << i;
+      EXPECT_GT(p.sensor_error[i], found / factor) << i;
+    }
+  }
+}
+
 /// Returns the configuration of the record. `at_places`: the axes above the base are not on frames
 /// but at the plan's origin.
 PipelineConfig everywhere(const TallRecord& record, bool at_places) {

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+'use strict';
+// Records a session and plays it on the page: slider, pause and speed must show what was recorded; signals and layout
+// survive a reload; sessions that are empty, cut off or of another building are refused in words. The page is gray
+// until it has a baseline, and cuts nothing off at 390, 1400 and 2560 px and on paper.
+const {chromium} = require('playwright-core');
+const {spawn, execFileSync} = require('child_process');
+const fs = require('fs'), os = require('os'), path = require('path');
+
+const [program, browserPath, configs] = process.argv.slice(2);
+// Limits.
+const kPatience = {timeout: 60000}, kRecorded_s = 30, kDrop_s = 14, kSpeedError = 0.25, kSeek_ms = 250, kPaper_px = 718;
+
+const children = [], failures = [], said = [];
+const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
+function start(...args) {
+  const child = spawn(program, args, {stdio: ['ignore', 'pipe', 'inherit']});
+  children.push(child);
+  child.ended = new Promise(done => child.on('exit', done));
+  return child;
+}
+const pause = ms => new Promise(done => setTimeout(done, ms));
+async function until(page, what, condition, argument) {
+  const came = await page.waitForFunction(condition, argument, kPatience).catch(() => null);
+  expect(came !== null, what);
+}
+const scrub = async (page, t_s) => {
+  await page.evaluate(t => { const at = document.getElementById('p-at'); at.value = t; at.dispatchEvent(new Event('input')); }, t_s);
+  await page.waitForFunction(t => playback.sought === null && Math.abs(playback.at - t) < 0.06, t_s, kPatience);
+};
+
+async function gray(page) {
+  await until(page, 'gray: values come before a baseline', () => building.ratio.filter(r => r !== undefined).length > 8 && !baselineKnown());
+  const [ratios, states, damping] = await page.evaluate(() => [building.ratio.filter(r => r !== undefined), [...document.querySelectorAll('#answers>li')].map(li => li.className),
+    boxPlots[2].index.map(i => [boxPlots[2].shape(i, false).reference, reference(i)])]);
+  expect(ratios.length > 8 && ratios.every(r => r === 1), 'gray: no element has a color before it has a baseline');
+  expect(states[0] === 'wait' && states[3] === 'wait', `gray: what is not judged is gray: ${states}`);
+  expect(damping.flat().every(r => r === null), 'damping is compared with no design');
+  await page.screenshot({path: 'session-gray.png', fullPage: true});
+}
+
+async function complete(page) {
+  await page.click('#values summary');
+  const cut = () => page.evaluate(() => [...document.querySelectorAll('.across,.scroll,.strip,#g-plot,h2,p,li')].filter(e => e.offsetParent && e.scrollWidth > e.clientWidth + 1).map(e => e.id || e.firstElementChild && e.firstElementChild.id || e.className));
+  for (const width of [390, 1400, 2560]) {
+    await page.setViewportSize({width, height: 1000});
+    await pause(1200);
+    for (const scheme of ['light', 'dark']) {
+      await page.evaluate(name => useTheme(name), scheme);
+      await pause(300);
+      await page.screenshot({path: `session-${width}-${scheme}.png`, fullPage: true});
+    }
+    const found = await cut();
+    expect(found.length === 0 && await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `complete at ${width} px ${found}`);
+    if (width > 390) continue;
+    expect(await page.evaluate(() => getComputedStyle(document.querySelector('#value-table td:nth-child(2)'), '::before').content.includes('value')), 'narrow tables name each value');
+  }
+  await page.setViewportSize({width: kPaper_px, height: 1000});
+  await page.emulateMedia({media: 'print'});
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  await pause(300);
+  const found = await cut();
+  expect(found.length === 0 && await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth && Math.abs(document.getElementById('box-k').clientWidth * devicePixelRatio - document.getElementById('box-k').width) < 2), `complete on paper, not squeezed ${found}`);
+  await page.pdf({path: 'session.pdf', format: 'A4', margin: {top: '10mm', bottom: '10mm', left: '10mm', right: '10mm'}});
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await page.emulateMedia({media: 'screen'});
+  await page.setViewportSize({width: 1400, height: 1350});
+  await page.click('#values summary');
+}
+
+async function plays(page, folder) {
+  await page.click('#sessions button');
+  await until(page, 'the session is loaded', () => window.framewatch.playback && framewatch.playback.done);
+  expect(await page.textContent('#state') === 'a recorded session' && await page.textContent('#p-name') === 'scrubbed', 'the page says that it is a recording');
+  const length_s = await page.evaluate(() => playback.loaded);
+  expect(Math.abs(length_s - kRecorded_s) < 3, `${length_s} s of ${kRecorded_s} s can be played`);
+  expect(await page.isHidden('#baseline'), 'a recording takes no commands');
+  await page.click('#p-play');
+  const at = await page.evaluate(() => playback.at);
+  await pause(500);
+  expect(at > 0 && await page.evaluate(() => playback.at) === at && await page.textContent('#p-play') === 'Play', 'a pause stands still');
+  // Scrubbing shows what was estimated at that time.
+  const csv = path.join(folder, 'estimates.csv');
+  execFileSync(program, ['convert', path.join(folder, 'estimates.lcmlog'), '--channel', 'FRAMEWATCH_ESTIMATE', csv]);
+  const lines = fs.readFileSync(csv, 'utf8').trim().split('\n').map(l => l.split(',')), column = lines[0].indexOf('kx_1_y2');
+  const logged = new Map(lines.slice(1).map(l => [Math.round(1e6 * l[0]), Number(l[column])]));
+  const seen = [];
+  for (const t of [12, 25, 12]) {
+    await scrub(page, t);
+    seen.push(await page.evaluate(() => ({us: estimate.end_us, value: estimate.value[1], row: lastRow, accel: Array.from(strips.accel.ring.view()[1]), ring: strips.k.ring.n,
+      open: told.findings.length, answer: document.getElementById('answers').innerText, ratio: building.ratio[1]})));
+  }
+  expect(seen.every(s => logged.get(s.us) === s.value), `the value at each time is the one of the log: ${seen.map(s => s.value)}`);
+  expect(Math.abs(seen[1].row - seen[0].row - 13e6) < 2e5, '13 s of the slider are 13 s of the sensors');
+  const differ = Object.keys(seen[0]).filter(k => JSON.stringify(seen[0][k]) !== JSON.stringify(seen[2][k]));
+  expect(differ.length === 0, `there and back shows the same ${differ}`);
+  expect(seen[0].accel.length > 900 && seen[0].accel.every(v => v !== null), 'the strips have the 10 s before');
+  expect(seen[0].open === 0 && /No\. None of/.test(seen[0].answer) && seen[1].open === 1 && /Yes\..*kx_1_y2/.test(seen[1].answer) && Math.abs(seen[1].ratio - 0.85) < 0.02, 'answers and colors are those of the time');
+  const ms = await page.evaluate(() => { const from = performance.now(); playback.seek(25); return performance.now() - from; });
+  expect(ms < kSeek_ms, `a jump takes ${ms.toFixed(0)} ms`);
+  await scrub(page, 2);
+  await page.selectOption('#p-speed', '5');
+  await page.click('#p-play');
+  await pause(500);
+  const [from, then] = await page.evaluate(() => [playback.at, performance.now()]);
+  await pause(3000);
+  const [to, now] = await page.evaluate(() => [playback.at, performance.now()]);
+  const speed = 1e3 * (to - from) / (now - then);
+  expect(Math.abs(speed / 5 - 1) < kSpeedError, `speed 5 is ${speed.toFixed(2)}`);
+  await page.focus('#p-at');
+  await page.click('#p-play');
+  await page.focus('#p-at');
+  const before = await page.evaluate(() => playback.at);
+  await page.keyboard.press('ArrowLeft');
+  await pause(300);
+  expect(await page.evaluate(() => playback.at) < before, 'arrow keys move the slider');
+}
+
+async function arranged(page) {
+  for (const id of ['a:F2-Y1', 'd:kx_1_y2', 'p:kx_1_y2', 'residual']) await page.selectOption('#g-add', id);
+  await scrub(page, 25);
+  await pause(500);
+  const drawn = () => page.evaluate(() => signals.plot.data.slice(1).map(d => (signals.over ? d[1] : d).filter(v => v !== null && v !== undefined).length));
+  expect((await drawn()).every((n, i) => n > (i < 2 ? 900 : 30)), `four signals over time: ${await drawn()} values`);
+  await page.locator('#signals-card').screenshot({path: 'session-signals.png'});
+  await page.selectOption('#g-over', 'd:kx_1_y1');
+  await pause(500);
+  const paired = await page.evaluate(() => { const [xs, ys] = signals.plot.data[1]; return xs.filter((x, i) => x !== null && ys[i] !== null).length; });
+  expect(paired > 900, `an acceleration over a drift: ${paired} pairs`);
+  await page.locator('#signals-card').screenshot({path: 'session-over.png'});
+  await page.click('#layout');
+  await page.locator('#layout-cards li').filter({hasText: 'Health'}).getByRole('checkbox').first().uncheck();
+  await page.locator('#layout-cards li').filter({hasText: 'Signals'}).getByRole('button', {name: 'Up'}).click();
+  await page.screenshot({path: 'session-layout.png'});
+  await page.keyboard.press('Escape');
+  await page.reload();
+  await until(page, 'reloaded: the session is loaded again', () => window.framewatch.playback && framewatch.playback.done);
+  const kept = await page.evaluate(() => [signals.chosen.map(s => s.id).join(), signals.over.id, document.getElementById('health-card').offsetParent === null, cards().findIndex(c => c.id === 'signals-card') < cards().findIndex(c => c.id === 'strips-card')]);
+  expect(kept[0] === 'a:F2-Y1,d:kx_1_y2,p:kx_1_y2,residual' && kept[1] === 'd:kx_1_y1' && kept[2] && kept[3], `reloaded: signals and layout are kept ${kept}`);
+  for (const bad of ['{', 'null', '[]', '{"order":7,"away":"x","wide":[1],"signals":["a:gone",3],"over":{},"span":"never","element":5}']) {
+    await page.evaluate(text => localStorage.setItem('layout', text), bad);
+    await page.reload();
+    await until(page, `a stored layout ${bad} does not harm`, () => window.framewatch.playback && framewatch.playback.done && cards().length === 10 && cards().every(c => c.hidden || c.offsetParent));
+  }
+  await page.click('#p-live');
+  await until(page, 'back to live', () => !location.hash && document.getElementById('state').textContent.startsWith('live') && document.getElementById('playback').hidden);
+}
+
+async function refuses(page, sessions, name) {
+  const copy = (to, change) => {
+    const folder = path.join(sessions, to);
+    fs.cpSync(path.join(sessions, name), folder, {recursive: true});
+    change(folder);
+  };
+  const edit = (folder, change) => { const file = path.join(folder, 'session.json'), json = JSON.parse(fs.readFileSync(file)); change(json); fs.writeFileSync(file, JSON.stringify(json).replaceAll('F2-Y1', 'roof')); };
+  copy('empty', f => fs.truncateSync(path.join(f, 'raw.lcmlog'), 0));
+  copy('cut', f => fs.truncateSync(path.join(f, 'raw.lcmlog'), Math.floor(fs.statSync(path.join(f, 'raw.lcmlog')).size / 2) + 5));
+  copy('other', f => edit(f, json => { json.configuration.sha256 = 'x'; }));
+  const address = new URL('/', page.url()).href;
+  const news = async session => {
+    await page.goto('about:blank');
+    await page.goto(address + '#session=' + session);
+    await page.waitForFunction(() => document.getElementById('p-news').textContent !== '', null, kPatience).catch(() => {});
+    return page.textContent('#p-news');
+  };
+  for (const [session, words] of [['empty', /holds no samples/], ['cut', /Damaged: raw\.lcmlog: byte \d+: the recording is cut off/], ['other', /another building: of its channels, this page lacks roof; .* lacks F2-Y1\. Open it with/], ['missing', /no such session/]]) {
+    const text = await news(session);
+    expect(words.test(text), `${session}: ${text}`);
+  }
+  expect(await page.evaluate(() => fetch('session/cut/playback').then(r => r.headers.get('content-security-policy'))).then(p => p.includes("script-src 'self'")), 'the policy is the page\'s');
+}
+
+async function main() {
+  const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-session-'));
+  process.env.XDG_RUNTIME_DIR = work; // where commands go
+  const url = `udpm://239.255.76.67:${8800 + process.pid % 1000}?ttl=0`;
+  const config = path.join(configs, 'table_two_story.toml'), scenario = path.join(work, 'scenario.toml'), sessions = path.join(work, 'sessions');
+  fs.writeFileSync(scenario, fs.readFileSync(path.join(configs, 'scenario_table_two_story.toml'), 'utf8')
+    .replace('"table_two_story.toml"', JSON.stringify(fs.realpathSync(config))) + `\n[[change]]\nat_s = ${kDrop_s}.0\nparameter = "kx_1_y2"\nfactor = 0.85\n`);
+  start('run', config, '--url', url, '--quiet');
+  const recorder = start('record', config, '--url', url, '--quiet', '--out', sessions, '--seconds', String(kRecorded_s), '--test', 'scrubbed', '--no-check');
+  const serve = start('serve', config, '--url', url, '--port', '0', '--sessions', sessions, '--quiet');
+  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+  const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
+  const page = await browser.newPage({viewport: {width: 1400, height: 1350}});
+  page.on('console', m => { if (!/409 \(Conflict\)/.test(m.text())) said.push(m.text()); });
+  page.on('pageerror', e => said.push(e.stack));
+  await page.goto(address);
+  start('simulate', scenario, '--lcm', url, '--seconds', '900', '--quiet');
+  await gray(page);
+  await recorder.ended;
+  await complete(page);
+  await page.reload();
+  await page.waitForSelector('#sessions button', kPatience);
+  const name = fs.readdirSync(sessions).find(n => fs.existsSync(path.join(sessions, n, 'session.json')));
+  await plays(page, path.join(sessions, name));
+  await arranged(page);
+  await refuses(page, sessions, name);
+  expect(said.length === 0, 'nothing on the console ' + said.join('; '));
+  await browser.close();
+  fs.rmSync(work, {recursive: true, force: true});
+}
+
+main().catch(e => { failures.push(e.message); console.log(e); }).finally(() => {
+  for (const child of children) if (child.exitCode === null) child.kill();
+  console.log(failures.length ? `session: ${failures.length} failed` : 'session: all passed');
+  process.exit(failures.length ? 1 : 0);
+});
