@@ -5,8 +5,6 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/svg_plot.h"
-
 namespace framewatch::daemon {
 namespace {
 
@@ -98,6 +96,12 @@ std::string html_figure(const std::vector<std::string>& plots, const std::string
   std::string out = "<figure><div>\n";
   for (const std::string& plot : plots) out += plot;
   return out + "</div><figcaption>" + caption + "</figcaption></figure>\n";
+}
+
+std::string html_figure(const std::vector<Picture>& pictures, const std::string& caption) {
+  std::vector<std::string> plots;
+  for (const Picture& picture : pictures) plots.push_back(picture.plot.svg());
+  return html_figure(plots, caption);
 }
 
 std::string html_page(const std::string& title, const std::string& body) {

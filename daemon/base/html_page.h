@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/base/printable.h"
+#include "daemon/base/svg_plot.h"
 
 namespace framewatch::daemon {
 
@@ -15,6 +16,7 @@ std::string html_table(const std::vector<std::string>& head,
 
 /// Returns plots (SvgPlot::svg()) side by side with one caption.
 std::string html_figure(const std::vector<std::string>& plots, const std::string& caption);
+std::string html_figure(const std::vector<Picture>& pictures, const std::string& caption);
 
 /// Returns a self-contained page without scripts or fetched files, light or dark by the reader's
 /// system and light on paper. `title` is text, `body` is HTML.

@@ -55,14 +55,20 @@ std::string variables(const char* const (&colors)[7], const char* grid) {
   return out;
 }
 
+/// Colors for print. Those that meet in one plot differ by at least 30 of 255 in gray.
+constexpr const char* kPrint[] = {"#00457c", "#e07b39", "#006b45", "#dcb4d8",
+                                  "#8a5a00", "#9fcbe6", "#b4b4b4"};
+/// Dashes of the lines of series 1 to 3; series 0 is solid.
+constexpr const char* kDashes[] = {"7 2", "2 1.5", "7 2 1.5 2"};
+
 constexpr const char* kMarks =
     ".plot{max-width:100%;height:auto;font:11px system-ui,sans-serif;color:inherit}"
     ".plot text{fill:currentColor}.plot .ti{font-weight:600;font-size:12px}"
     ".plot .ye{text-anchor:end}.plot .xe{text-anchor:middle}"
     ".plot .g{stroke:var(--grid);stroke-width:1}"
-    ".plot .o{fill:none;stroke:currentColor;stroke-width:.8;opacity:.6}"
-    ".plot .r{stroke:currentColor;stroke-width:1;stroke-dasharray:2 3;opacity:.7}"
-    ".plot .l{fill:none;stroke-width:1.6}.plot .t{fill:none;stroke-width:.8;opacity:.75}"
+    ".plot .o{fill:none;stroke:currentColor;stroke-width:.8;stroke-opacity:.6}"
+    ".plot .r{stroke:currentColor;stroke-width:1;stroke-dasharray:2 3;stroke-opacity:.7}"
+    ".plot .l{fill:none;stroke-width:1.6}.plot .t{fill:none;stroke-width:.8;stroke-opacity:.75}"
     ".plot .d{stroke-dasharray:6 4}"
     ".plot .b{fill:var(--page);stroke-width:1.2}.plot .m{stroke-width:2.4}";
 
@@ -76,6 +82,7 @@ constexpr double kFar = 1e4;  // px; points farther outside are clipped
 struct Area {
   SvgAxis x, y;
   double left, top, width, height;
+  double bar = 7;  ///< width of a bar
 
   double px(double value) const { return std::clamp(position(x, value) * width, -kFar, kFar); }
   double py(double value) const {
@@ -151,9 +158,9 @@ std::string mark(const SvgSeries& s, const Area& a, std::size_t i) {
   if (s.mark == SvgMark::bars) {
     const double zero = std::clamp(a.py(0), 0.0, std::max(0.0, a.height));
     return out + fmt::format(
-                     "<rect class=\"f{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"7\" "
+                     "<rect class=\"f{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.2g}\" "
                      "height=\"{:.1f}\"/>",
-                     s.color, x - 3.5, std::min(y, zero), std::abs(zero - y));
+                     s.color, x - a.bar / 2, std::min(y, zero), a.bar, std::abs(zero - y));
   }
   return out + fmt::format("<circle class=\"{}{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>",
                            s.mark == SvgMark::rings ? "l s" : "f", s.color, x, y,
@@ -220,14 +227,61 @@ std::string frame(const Area& a) {
 /// Draws a sample of a series in the legend, 18 px wide, then its name.
 std::string legend_entry(const SvgSeries& s, double x, double y) {
   if (is_line(s.mark))
-    return fmt::format("<g class=\"s{}\">{}</g>", s.color,
-                       line(line_style(s.mark), x, y - 4, x + 16, y - 4)) +
+    return polyline({{x, y - 4}, {x + 16, y - 4}}, line_style(s.mark), s.color) +
            text("le", x + 21, y, s.name);
   SvgSeries one{"", s.color, s.mark, {0}, {1}, {}};
   const Area a{{"", 0, 1, false, {}}, {"", 0, 1, false, {}}, 0, 0, 1, 8};
   return fmt::format("<g transform=\"translate({:.1f} {:.1f})\">{}</g>", x + 8,
                      y - 8 + (s.mark == SvgMark::bars ? 0 : 4), mark(one, a, 0)) +
          text("le", x + 21, y, s.name);
+}
+
+constexpr double kOfSpacing = 0.85;  ///< width of a bar, share of the space to the next one
+
+/// Returns the least distance between two places of bars, px.
+double least_spacing(std::vector<double> bars, const Area& a) {
+  std::sort(bars.begin(), bars.end());
+  double least = INFINITY;
+  for (std::size_t i = 1; i < bars.size(); ++i)
+    if (const double apart = a.px(bars[i]) - a.px(bars[i - 1]); apart > 1e-3)
+      least = std::min(least, apart);
+  return least;
+}
+
+/// Returns `text` with every `from` replaced by `to`.
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// Returns the style of a document for print: kMarks without variables, which only browsers know.
+std::string print_style() {
+  std::string out = replaced(replaced(kMarks, "var(--grid)", "#dcdcdc"), "var(--page)", "#fff");
+  out = replaced(replaced(out, "currentColor", "#000"), "font:11px system-ui,sans-serif;",
+                 "font-family:Helvetica,Arial,'Liberation Sans','DejaVu Sans',sans-serif;"
+                 "font-size:10.7px;");
+  for (int i = 0; i < 7; ++i)
+    out += fmt::format(".plot .s{0}{{stroke:{1}}}.plot .f{0}{{fill:{1}}}", i, kPrint[i]);
+  for (int i = 1; i <= 3; ++i)
+    out += fmt::format(".plot polyline.l.s{}{{stroke-dasharray:{}}}", i, kDashes[i - 1]);
+  return out +
+         ".plot polyline.d{stroke-dasharray:4 3}.plot rect.f0,.plot rect.f1,.plot rect.f2,"
+         ".plot rect.f3,.plot rect.f4,.plot rect.f5,.plot rect.f6{stroke:#000;"
+         "stroke-width:.4}";
+}
+
+/// Returns "time (s)" for the axis label "time, s".
+std::string column_title(const std::string& label, const char* otherwise) {
+  if (label.empty()) return otherwise;
+  const std::size_t comma = label.rfind(", ");
+  return comma == std::string::npos
+             ? label
+             : fmt::format("{} ({})", label.substr(0, comma), label.substr(comma + 2));
+}
+
+std::string csv_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
 }
 
 }  // namespace
@@ -300,27 +354,97 @@ SvgPlot::SvgPlot(std::string title, SvgAxis x, SvgAxis y, int width, int height)
       height_(height) {}
 
 std::string SvgPlot::svg() const {
-  std::vector<double> xs, ys = rules_;
+  const std::string head = fmt::format(
+      "<svg class=\"plot\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
+      "aria-label=\"{2}\">",
+      width_, height_, html_text(title_.empty() ? y_.label : title_));
+  return drawn(head, width_, true) + "\n";
+}
+
+std::string SvgPlot::document(double width_mm) const {
+  constexpr double kPixelsPerMm = 96 / 25.4;
+  const int width = static_cast<int>(std::lround(width_mm * kPixelsPerMm));
+  const std::string head = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" viewBox=\"0 0 {0} {1}\" "
+      "width=\"{2:.2f}mm\" height=\"{3:.2f}mm\"><title>{4}</title><style>{5}</style>",
+      width, height_, width_mm, height_ / kPixelsPerMm,
+      html_text(title_.empty() ? y_.label : title_), print_style());
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + drawn(head, width, false) + "\n";
+}
+
+std::string SvgPlot::csv() const {
+  bool errors = false;
+  for (const SvgSeries& s : series_) errors = errors || !s.error.empty();
+  std::string out = "series," + csv_text(column_title(x_.label, "x")) + "," +
+                    csv_text(column_title(y_.label, "y")) + (errors ? ",standard error" : "") +
+                    (boxes_.empty() ? "" : ",statistic") + "\n";
+  const auto add = [&](const std::string& series, double x, double y, double error,
+                       const char* statistic) {
+    if (!std::isfinite(x) || (!boxes_.empty() && !std::isfinite(y))) return;
+    const auto place = static_cast<std::size_t>(std::lround(std::max(x, 1.0))) - 1;
+    const std::string row =
+        csv_text(series) + "," +
+        (place < x_.categories.size() ? csv_text(x_.categories[place]) : csv_number(x)) + "," +
+        csv_number(y) + (errors ? "," + csv_number(error) : "") +
+        (boxes_.empty() ? "" : std::string(",") + statistic) + "\n";
+    if (!out.ends_with("\n" + row)) out += row;  // both ends of a dash across its category
+  };
+  for (const SvgSeries& s : series_)
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+      add(s.name.empty() ? s.told : s.name, s.x[i], s.y[i],
+          i < s.error.size() ? s.error[i] : std::numeric_limits<double>::quiet_NaN(), "");
+  for (const SvgBox& b : boxes_) {
+    if (b.statistics.count == 0) continue;
+    std::string series;
+    for (const SvgSeries& s : series_)
+      if (s.color == b.color && series.empty()) series = s.name;
+    const auto one = [&](const char* statistic, double y) {
+      add(series, b.x, y, std::numeric_limits<double>::quiet_NaN(), statistic);
+    };
+    one("lower whisker", b.statistics.whisker_low);
+    one("lower quartile", b.statistics.q1);
+    one("median", b.statistics.median);
+    one("upper quartile", b.statistics.q3);
+    one("upper whisker", b.statistics.whisker_high);
+    for (const double value : b.outliers) one("outlier", value);
+  }
+  return out;
+}
+
+std::vector<double> SvgPlot::ys_within(const SvgAxis& x) const {
+  std::vector<double> ys = rules_;
   for (const SvgSeries& s : series_) {
-    xs.insert(xs.end(), s.x.begin(), s.x.end());
-    ys.insert(ys.end(), s.y.begin(), s.y.end());
-    for (std::size_t i = 0; i < s.error.size(); ++i)
-      for (const double end : {s.y[i] - s.error[i], s.y[i] + s.error[i]}) ys.push_back(end);
+    for (std::size_t i = 0; i < s.y.size(); ++i) {
+      if (!(s.x[i] >= x.low && s.x[i] <= x.high)) continue;
+      ys.push_back(s.y[i]);
+      if (i < s.error.size()) ys.insert(ys.end(), {s.y[i] - s.error[i], s.y[i] + s.error[i]});
+    }
     if (s.mark == SvgMark::bars) ys.push_back(0);
   }
   for (const SvgBox& b : boxes_) {
     if (b.statistics.count == 0) continue;
-    xs.push_back(b.x);
     ys.insert(ys.end(), {b.statistics.whisker_low, b.statistics.whisker_high});
     ys.insert(ys.end(), b.outliers.begin(), b.outliers.end());
   }
+  return ys;
+}
+
+std::string SvgPlot::drawn(const std::string& head, int width, bool titled) const {
+  std::vector<double> xs, bars;
+  for (const SvgSeries& s : series_) {
+    xs.insert(xs.end(), s.x.begin(), s.x.end());
+    if (s.mark == SvgMark::bars) bars.insert(bars.end(), s.x.begin(), s.x.end());
+  }
+  for (const SvgBox& b : boxes_)
+    if (b.statistics.count > 0) xs.push_back(b.x);
   std::string legend;
-  double x = kLeft, top = kTop + (title_.empty() ? 0 : kLine);
+  titled = titled && !title_.empty();
+  double x = kLeft, top = kTop + (titled ? kLine : 0);
   for (const SvgSeries& s : series_) {
     if (s.name.empty()) continue;
     const double wide = 34 + kCharacter * static_cast<double>(s.name.size());
     if (legend.empty()) top += kLine;
-    if (x > kLeft && x + wide > width_ - kRight) {
+    if (x > kLeft && x + wide > width - kRight) {
       x = kLeft;
       top += kLine;
     }
@@ -329,17 +453,16 @@ std::string SvgPlot::svg() const {
   }
   std::size_t longest = 0;
   for (const std::string& name : x_.categories) longest = std::max(longest, name.size());
-  const double across = width_ - kLeft - kRight;
+  const double across = width - kLeft - kRight;
   const bool slanted = kCharacter * static_cast<double>(longest * x_.categories.size()) > across;
   const double below = kBottom + (slanted ? 5 * static_cast<double>(longest) - 8 : 0) -
                        (x_.label.empty() ? kLine : 0);
-  const Area a{fitted(x_, xs), fitted(y_, ys), kLeft, top, across, height_ - top - below};
+  Area a{fitted(x_, xs),       fitted(y_, ys_within(fitted(x_, xs))), kLeft, top, across,
+         height_ - top - below};
+  a.bar = std::min(a.bar, kOfSpacing * least_spacing(bars, a));
 
-  std::string out = fmt::format(
-      "<svg class=\"plot\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
-      "aria-label=\"{2}\">",
-      width_, height_, html_text(title_.empty() ? a.y.label : title_));
-  if (!title_.empty()) out += text("ti", kLeft, kTop + 5, title_);
+  std::string out = head;
+  if (titled) out += text("ti", kLeft, kTop + 5, title_);
   out += legend;
   out += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">", a.left, a.top) + frame(a);
   out += fmt::format("<svg width=\"{:.1f}\" height=\"{:.1f}\" overflow=\"hidden\">", a.width,
@@ -352,7 +475,7 @@ std::string SvgPlot::svg() const {
   out += text("xe", a.width / 2, a.height + below - 8, a.x.label);
   out += fmt::format("<text class=\"xe\" transform=\"translate({} {:.1f}) rotate(-90)\">{}</text>",
                      kFromEdge - kLeft, a.height / 2, html_text(a.y.label));
-  return out + "</g></svg>\n";
+  return out + "</g></svg>";
 }
 
 }  // namespace framewatch::daemon

@@ -52,7 +52,8 @@ struct SvgSeries {
   std::vector<double> x;
   std::vector<double> y;
   std::vector<double> error =
-      {};  ///< half length of the error bar at each point; empty for no bars
+      {};                 ///< half length of the error bar at each point; empty for no bars
+  std::string told = {};  ///< name in csv() of a series that the legend leaves out
 };
 
 /// A box as MATLAB's boxplot draws it, standing at x.
@@ -82,13 +83,34 @@ class SvgPlot {
 
   std::string svg() const;
 
+  /// Returns an SVG document for print, `width_mm` wide, without the title. Letters have 8 points
+  /// at that size. Series keep apart in gray: their colors differ in lightness, their lines in
+  /// dashes.
+  std::string document(double width_mm) const;
+
+  /// Returns the drawn points as CSV, one row each: the series, x and y with the labels of the
+  /// axes, and, where the plot has them, the error and the statistic of a box.
+  std::string csv() const;
+
+  const std::string& title() const { return title_; }
+
  private:
+  /// Returns the values that the y axis must hold, of all points within the x axis.
+  std::vector<double> ys_within(const SvgAxis& x) const;
+  std::string drawn(const std::string& head, int width, bool titled) const;
+
   std::string title_;
   SvgAxis x_, y_;
   int width_, height_;
   std::vector<SvgSeries> series_;
   std::vector<SvgBox> boxes_;
   std::vector<double> rules_;
+};
+
+/// A plot with the stable name of its files, such as "transfer-x".
+struct Picture {
+  std::string name;
+  SvgPlot plot;
 };
 
 }  // namespace framewatch::daemon

@@ -82,7 +82,7 @@ void add_json(CLI::App* command, bool& json) {
   command->add_flag("--json", json, "print JSON for programs");
 }
 
-void add_record_options(CLI::App* command, RecordFileArguments& record) {
+void add_record_options(CLI::App* command, RecordFileArguments& record, const char* format) {
   command->add_option(
       "--unit", record.unit,
       "unit of a file that does not state it: g, mg, gal, mps2, or the m/s^2 of one");
@@ -105,8 +105,7 @@ void add_record_options(CLI::App* command, RecordFileArguments& record) {
       ->add_option("--names", record.names, "names of the channels, in the file's order: A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--format", record.format, drivers::record_format_names())
-      ->capture_default_str();
+  command->add_option(format, record.format, drivers::record_format_names())->capture_default_str();
 }
 
 void add_max_size(CLI::App* command) {

@@ -67,8 +67,10 @@ void add_config(CommandList& commands, CLI::App* command,
 void add_installed_config(CLI::App* command, std::string& config);  ///< CONFIG, with a default
 void add_url(CLI::App* command, std::string& url);                  ///< --url
 void add_json(CLI::App* command, bool& json);                       ///< --json
-/// Adds --unit, --step and similar options for properties that a record does not state.
-void add_record_options(CLI::App* command, RecordFileArguments& record);
+/// Adds --unit, --step and similar options for properties that a record does not state. format: the
+/// option for the format of record files.
+void add_record_options(CLI::App* command, RecordFileArguments& record,
+                        const char* format = "--format");
 void add_max_size(CLI::App* command);  ///< --max-size of unpacked input
 
 // help_commands.cpp: commands of every program.

@@ -27,6 +27,19 @@ void add_parts(CLI::App* command, ReplayArguments& arguments) {
            "continue from the saved state of an earlier replay or of the daemon");
 }
 
+/// Adds --figures and --format.
+void add_figures(CLI::App* command, PictureFiles& figures) {
+  add_folder(command, "--figures", figures.folder,
+             "new folder for every picture as a file, one and two columns wide, with "
+             "its\npoints as CSV");
+  command
+      ->add_option("--format", figures.formats,
+                   "formats of these files: svg, pdf, png (needs the package librsvg2-bin)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"svg", "pdf", "png"}))
+      ->default_str("svg");
+}
+
 }  // namespace
 
 void add_replay(CommandList& commands) {
@@ -246,8 +259,9 @@ void add_report(CommandList& commands) {
       "report",
       "write a self-contained page about a session: boxplots, parameters, histories, loops",
       "With --config and --raw, it also shows stages (forced and free vibration side by "
-      "side),\nreference-dynamic values, transfer functions, drifts and forces.\nExample: "
-      "framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html");
+      "side),\nreference-dynamic values, transfer functions, drifts and forces.\nExamples:\n  "
+      "framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html\n  "
+      "framewatch report est.lcmlog --figures figures --format pdf,png");
   commands.reads_files(
       command->add_option("EST", arguments.estimates, "LCM event log of estimates")->required());
   add_file(command, "--out", arguments.out, "page to write (default: EST with .html)");
@@ -258,13 +272,14 @@ void add_report(CommandList& commands) {
           ->add_option("--raw", arguments.raw,
                        "raw samples: LCM event logs and record files, in order of time")
           ->type_name("FILE"));
-  add_record_options(command, arguments.record);
+  add_record_options(command, arguments.record, "--raw-format");  // --format: of pictures
   add_file(command, "--floors", arguments.floors,
            "JSON file for the peaks of every floor, and the errors when measured "
            "floors\nare left out in turn (channels on some floors only)");
   add_file(command, "--drifts", arguments.drifts,
            "JSON file for the peak drift of every story with its error, its "
            "probable\ndamage by [fragility], and the placard");
+  add_figures(command, arguments.figures);
   command->add_option("--title", arguments.title, "title of the page");
   command->add_option("--test", arguments.test, "name of the test");
   command->add_option("--operator", arguments.operator_name, "operator of the test");

@@ -81,6 +81,16 @@ std::vector<Problem> find_problems(const Structure& s) {
     if (!names.insert(s.frame_name(f)).second)
       add(field, "'" + s.frame_name(f) + "' is the name of two frames");
   }
+  const auto check_labels = [&](const char* field, const std::vector<std::string>& labels,
+                                std::size_t frames) {
+    if (!labels.empty() && labels.size() != frames)
+      add(field, "expected " + std::to_string(frames) + " labels, one for each frame, found " +
+                     std::to_string(labels.size()));
+    for (const std::string& label : labels)
+      if (!names.insert(label).second) add(field, "'" + label + "' is the name of two frames");
+  };
+  check_labels("labels_x", s.labels_x, s.frames_x.size());
+  check_labels("labels_y", s.labels_y, s.frames_y.size());
   return found;
 }
 

@@ -41,6 +41,8 @@ struct Structure {
   int stories = 0;                          ///< N
   std::vector<std::string> frames_x;        ///< names of the x-parallel frames; size n
   std::vector<std::string> frames_y;        ///< names of the y-parallel frames; size m
+  std::vector<std::string> labels_x;        ///< what people call frames_x; empty or size n
+  std::vector<std::string> labels_y;        ///< what people call frames_y; empty or size m
   std::vector<double> span_x;               ///< m, between y-parallel frames; size m-1
   std::vector<double> span_y;               ///< m, between x-parallel frames; size n-1
   std::vector<double> story_height;         ///< m; size N

@@ -26,6 +26,13 @@ const Option kStructure[] = {
      .meaning =
          "Names of the frames parallel to y, in order of x. Empty for a plane building along x.",
      .target = into<&estimator::Structure::frames_y>},
+    {.key = "labels_x",
+     .meaning =
+         "What people call frames_x, such as \"north wall\", for reports. Default: their names.",
+     .target = into<&estimator::Structure::labels_x>},
+    {.key = "labels_y",
+     .meaning = "What people call frames_y.",
+     .target = into<&estimator::Structure::labels_y>},
     {.key = "span_x_m",
      .unit = "m",
      .shape = "[x span]",

@@ -126,6 +126,8 @@ StructureReading read_structure(const TomlValue& document, std::vector<TextProbl
   ConfigSection section("structure", document, problems);
   check_names(section, "frames_x");
   check_names(section, "frames_y");
+  check_names(section, "labels_x");
+  check_names(section, "labels_y");
   StructureReading out;
   estimator::Structure& s = out.structure;
   section.read_into(s);
@@ -140,8 +142,8 @@ StructureReading read_structure(const TomlValue& document, std::vector<TextProbl
   if (shape_known && s.frames() > 0)
     s.node_mass = section.grid("node_mass_kg", {s.stories, std::max(s.n(), 1), std::max(s.m(), 1)});
   for (const estimator::Problem& p : find_problems(s)) {
-    const bool depends_on_shape =
-        p.field == "node_mass_kg" || p.field == "story_height_m" || p.field.starts_with("span_");
+    const bool depends_on_shape = p.field == "node_mass_kg" || p.field == "story_height_m" ||
+                                  p.field.starts_with("span_") || p.field.starts_with("labels_");
     if ((depends_on_shape && !shape_known) || (p.field == "node_mass_kg" && s.frames() == 0))
       continue;
     if (p.field.empty() ? out.frames_known : section.good(p.field)) {

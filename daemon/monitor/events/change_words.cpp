@@ -36,6 +36,12 @@ const char* frame_word(const PlaceOfName& place) {
   return place.where.find('+') == std::string::npos ? "frame" : "frames";
 }
 
+/// Returns the label of the one frame of a place; "" without one.
+std::string label_of(const PlaceOfName& place, const FrameLabels& labels) {
+  const auto found = place.quantity == 'G' ? labels.end() : labels.find(place.where);
+  return found == labels.end() ? "" : found->second;
+}
+
 /// "Up to" adds this many standard errors.
 constexpr double kUpTo = 2;
 
@@ -82,17 +88,28 @@ const char* reason_words(RecoveryReason reason) {
 
 }  // namespace
 
-std::string place_words(const std::string& parameter) {
+FrameLabels frame_labels(const estimator::Structure& s) {
+  FrameLabels out;
+  for (std::size_t f = 0; f < s.labels_x.size(); ++f) out[s.frames_x[f]] = s.labels_x[f];
+  for (std::size_t f = 0; f < s.labels_y.size(); ++f) out[s.frames_y[f]] = s.labels_y[f];
+  return out;
+}
+
+std::string place_words(const std::string& parameter, const FrameLabels& labels) {
   const PlaceOfName p = place_of(parameter);
   if (p.stories.empty()) return fmt::format("frames along {}", p.direction);
   if (p.where.empty()) return fmt::format("{}, along {}", p.stories, p.direction);
+  const std::string label = label_of(p, labels);
+  if (!label.empty()) return fmt::format("{}, {}", p.stories, label);
   return fmt::format("{}, {} {}", p.stories, p.quantity == 'G' ? "panel" : frame_word(p), p.where);
 }
 
-std::string element_words(const std::string& parameter) {
+std::string element_words(const std::string& parameter, const FrameLabels& labels) {
   const PlaceOfName p = place_of(parameter);
   if (p.stories.empty()) return fmt::format("bending of frames along {}", p.direction);
   if (p.where.empty()) return fmt::format("{} along {}", p.stories, p.direction);
+  const std::string label = label_of(p, labels);
+  if (!label.empty()) return fmt::format("{} ({}) of {}", label, p.where, p.stories);
   return fmt::format("{} {} of {}", p.quantity == 'G' ? "floor panel" : frame_word(p), p.where,
                      p.stories);
 }

@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "estimator/structure/parameter_table.h"
+#include "estimator/structure/structure.h"
 #include "estimator/watch/recovery.h"
 
 namespace framewatch::daemon {
 
+/// Labels that people gave to frames, such as "north wall", by the frame's name, such as y2.
+using FrameLabels = std::map<std::string, std::string>;
+FrameLabels frame_labels(const estimator::Structure& structure);
+
 /// Returns where the parameter named `parameter` (estimator::Parameter) is: "story 1, frame y2",
 /// "floor 2, panel x1y1", "stories 6 to 12, along x", "stories 6 to 12, frame y1", "frames along
-/// x". Takes any text.
-std::string place_words(const std::string& parameter);
+/// x". A frame with a label has it instead of its name: "story 1, north wall". Takes any text.
+std::string place_words(const std::string& parameter, const FrameLabels& labels = {});
 
 /// Returns the words for the element that `parameter` belongs to: "frame y2 of story 1", "floor
 /// panel x1y1 of floor 2", "stories 6 to 12 along x", "frame y1 of stories 6 to 12", "bending of
-/// frames along x". Takes any text.
-std::string element_words(const std::string& parameter);
+/// frames along x". A frame with a label has both: "north wall (y2) of story 1". Takes any text.
+std::string element_words(const std::string& parameter, const FrameLabels& labels = {});
 
 /// Returns `ratio` in percent, rounded to the digits that `std_error` justifies (both relative):
 /// "0.83 %", "15 %".

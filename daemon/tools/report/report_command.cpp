@@ -35,10 +35,12 @@ bool fits(const Config& config, const SessionEstimates& estimates) {
 std::string write_report(SessionReport r,
                          const std::vector<std::pair<std::string, std::string>>& files,
                          const std::string& path, const std::string& floors_path,
-                         const std::string& drifts_path) {
+                         const std::string& drifts_path, const PictureFiles& figures) {
   for (const auto& [use, file] : files) r.files.push_back({use, file, sha256_of_file(file)});
   evaluate(r);
-  std::string problem = drivers::write_text_file(path, session_report_html(r));
+  std::string problem;
+  if (!figures.folder.empty()) problem = write_pictures(session_pictures(r), figures);
+  if (problem.empty()) problem = drivers::write_text_file(path, session_report_html(r));
   if (problem.empty() && !drifts_path.empty())
     problem = drivers::write_text_file(drifts_path, drifts_json(*r.drifts, *r.config));
   if (!problem.empty() || floors_path.empty()) return problem;
@@ -56,6 +58,8 @@ int report(const ReportArguments& a) {
   if (a.raw.empty() && a.record.any())
     return refuse("report", "--unit, --step and the like are for the record files of --raw");
   const std::string path = out_path(a);
+  if (const std::string problem = problem_of_page_name(path); !problem.empty())
+    return refuse("report", problem + ". --figures writes the pictures as files");
   std::vector<std::string> inputs = a.raw;
   inputs.insert(inputs.end(), {a.estimates, a.config});
   for (const std::string& input : inputs) {
@@ -107,10 +111,12 @@ int report(const ReportArguments& a) {
   if (!a.config.empty()) files.push_back({"configuration", a.config});
   for (const std::string& raw : a.raw) files.push_back({"raw samples", raw});
   progress("making the page", 0);
-  const std::string problem = write_report(std::move(r), files, path, a.floors, a.drifts);
+  const std::string problem =
+      write_report(std::move(r), files, path, a.floors, a.drifts, a.figures);
   if (!problem.empty()) return refuse("report", problem);
   if (!a.quiet && !a.floors.empty()) fmt::print(stderr, "{}\n", a.floors);
   if (!a.quiet && !a.drifts.empty()) fmt::print(stderr, "{}\n", a.drifts);
+  if (!a.quiet && !a.figures.folder.empty()) fmt::print(stderr, "{}\n", a.figures.folder);
   if (!a.quiet && path != drivers::kStandardOutput) fmt::print("{}\n", path);
   return 0;
 }

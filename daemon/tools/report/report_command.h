@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/base/picture_files.h"
 #include "daemon/tools/report/session_report.h"
 
 namespace framewatch::daemon {
@@ -19,17 +20,19 @@ struct ReportArguments {
   std::string floors;   ///< JSON file for every floor's motion; empty: no file
   std::string drifts;   ///< JSON file for drifts, damage and placard; empty: no file
   std::string session;  ///< session.json of `framewatch record`; may be empty
+  PictureFiles figures;
   bool quiet = false;
 };
 
 /// Evaluates a session and writes its page, which lists `files` (use, path) with their SHA-256.
+/// Returns an empty string, or the reason of a failure.
+///
 /// floors_path: JSON file for every floor's motion; needs a building of groups and motion.
-/// drifts_path: JSON file for drifts, damage and placard; needs motion. Returns an empty string, or
-/// the reason of a failure.
+/// drifts_path: JSON file for drifts, damage and placard; needs motion. figures: for the pictures.
 std::string write_report(SessionReport session,
                          const std::vector<std::pair<std::string, std::string>>& files,
                          const std::string& path, const std::string& floors_path = {},
-                         const std::string& drifts_path = {});
+                         const std::string& drifts_path = {}, const PictureFiles& figures = {});
 
 /// Runs `framewatch report`: writes one self-contained HTML page of a session. Returns the exit
 /// code.

@@ -9,7 +9,6 @@
 #include <fmt/core.h>
 
 #include "daemon/monitor/estimates/parameter_summary.h"
-#include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"
@@ -256,12 +255,13 @@ std::string why_not_judged(const SessionEstimates& s) {
                            hidden);
 }
 
-std::string element_words(const parameter_table_t& table, std::size_t p) {
+std::string element_words(const parameter_table_t& table, std::size_t p,
+                          const FrameLabels& labels) {
   const std::string& name = table.name[p];
   const bool stiffness =
       table.kind[p] == static_cast<int>(estimator::ParameterKind::frame_stiffness) ||
       table.kind[p] == static_cast<int>(estimator::ParameterKind::panel_stiffness);
-  return stiffness ? element_words(name) : name;
+  return stiffness ? element_words(name, labels) : name;
 }
 
 }  // namespace framewatch::daemon

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/monitor/estimates/session_estimates.h"
+#include "daemon/monitor/events/change_words.h"
 #include "daemon/tools/report/session_motion.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/watch/change_point.h"
@@ -60,8 +61,9 @@ std::vector<JudgedElement> judged_elements(const SessionEstimates& session);
 /// Returns why stiffnesses with enough windows are not judged; "" without such a reason.
 std::string why_not_judged(const SessionEstimates& session);
 
-/// Returns "frame y2 of story 1" or "floor panel x1y1 of floor 2" for a stiffness, and the
-/// parameter's name otherwise.
-std::string element_words(const parameter_table_t& table, std::size_t parameter);
+/// Returns "frame y2 of story 1", "north wall (y2) of story 1" or "floor panel x1y1 of floor 2" for
+/// a stiffness, and the parameter's name otherwise.
+std::string element_words(const parameter_table_t& table, std::size_t parameter,
+                          const FrameLabels& labels = {});
 
 }  // namespace framewatch::daemon

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <fmt/core.h>
@@ -19,7 +20,7 @@ namespace {
 constexpr std::size_t kMaxHistories = 48, kMaxLoops = 32;
 constexpr Eigen::Index kMaxLoopPoints = 1000;
 
-std::string motion_plot(const SessionReport& r, bool base) {
+Picture motion_picture(const SessionReport& r, bool base) {
   const SessionMotion& m = *r.motion;
   const int story = base ? 0 : r.config->pipeline.structure.stories;
   SvgPlot plot(base ? "base" : fmt::format("floor {}", story), {"time, s"}, {"acceleration, m/s^2"},
@@ -33,7 +34,7 @@ std::string motion_plot(const SessionReport& r, bool base) {
     plot.add(
         SvgSeries{m.axes[a].name, color++, SvgMark::thin_line, t, {column.begin(), column.end()}});
   }
-  return plot.svg();
+  return {base ? "acceleration-base" : "acceleration-top", std::move(plot)};
 }
 
 /// Limits the axis to 98 % of the values and, if it is near, the reference, so that a few windows
@@ -55,8 +56,9 @@ SvgAxis without_spikes(SvgAxis axis, std::vector<double> values, double referenc
 }
 
 /// Plots a parameter with one standard error to either side over time.
-std::string history(const SessionReport& r, std::size_t p, const std::vector<double>& t) {
-  const auto [factor, unit] = paper_unit(r.estimates.table.kind[p]);
+Picture history(const SessionReport& r, std::size_t p, const std::vector<double>& t) {
+  const int kind = r.estimates.table.kind[p];
+  const auto [factor, unit] = r.units.of(kind);
   const auto& value = r.estimates.value[p];
   std::vector<double> v, low, high;
   for (std::size_t w = 0; w < value.size(); ++w) {
@@ -65,16 +67,18 @@ std::string history(const SessionReport& r, std::size_t p, const std::vector<dou
     high.push_back(factor * (value[w] + r.estimates.std_error[p][w]));
   }
   const double reference = factor * r.reference_static[p];
-  const SvgAxis y = without_spikes({unit}, v, reference);
-  SvgPlot plot(r.estimates.table.name[p], {"time, s"}, y, 485, 160);
-  plot.add(SvgSeries{"", 5, SvgMark::thin_line, t, low});
-  plot.add(SvgSeries{"", 5, SvgMark::thin_line, t, high});
-  plot.add(SvgSeries{"", 0, SvgMark::line, t, v});
+  const char* quantity = is_stiffness_kind(kind) ? "stiffness, " : "damping, ";
+  const SvgAxis y = without_spikes({quantity + unit}, v, reference);
+  SvgPlot plot(place_of(r, p), {"time, s"}, y, 485, 160);
+  plot.add(SvgSeries{"", 5, SvgMark::thin_line, t, low, {}, "less one standard error"});
+  plot.add(SvgSeries{"", 5, SvgMark::thin_line, t, high, {}, "plus one standard error"});
+  plot.add(SvgSeries{"", 0, SvgMark::line, t, v, {}, "estimate"});
   if (reference > y.low && reference < y.high) plot.add_rule(reference);
-  return plot.svg();
+  return {"history-" + r.estimates.table.name[p], std::move(plot)};
 }
 
-std::string quotient_plots(const TransferFunction& t) {
+/// Adds the pictures of one direction. when: "" or "-after".
+void add_quotients(const TransferFunction& t, const std::string& when, std::vector<Picture>& to) {
   const std::string direction = letter(t.direction);
   SvgAxis f{"frequency, Hz"};
   f.low = 0;
@@ -85,114 +89,20 @@ std::string quotient_plots(const TransferFunction& t) {
   if (!t.model.empty())
     gain.add(SvgSeries{"reference-static model", 1, SvgMark::dashed, t.frequency_hz, t.model});
   SvgPlot coherence("coherence, along " + direction, f, {"coherence", 0, 1.05}, 485, 240);
-  coherence.add(SvgSeries{"", 0, SvgMark::line, t.frequency_hz, t.coherence});
-  return gain.svg() + coherence.svg();
-}
-
-constexpr std::size_t kMaxPerPlot = 24;  ///< parameters side by side
-
-constexpr const char* kKindName[] = {"frame stiffness", "floor-panel stiffness", "frame damping",
-                                     "floor-panel damping"};
-
-std::vector<std::size_t> of_kind(const SessionReport& r, int kind) {
-  std::vector<std::size_t> out;
-  for (std::size_t p = 0; p < r.estimates.parameters(); ++p)
-    if (r.estimates.table.kind[p] == kind) out.push_back(p);
-  return out;
-}
-
-SvgAxis names(const SessionReport& r, const std::vector<std::size_t>& shown) {
-  SvgAxis axis{""};
-  for (const std::size_t p : shown) axis.categories.push_back(r.estimates.table.name[p]);
-  return axis;
-}
-
-/// Returns the offset of member i of `count` that share a place on the axis.
-double offset(std::size_t i, std::size_t count) {
-  return 0.7 * ((static_cast<double>(i) + 0.5) / static_cast<double>(count) - 0.5);
-}
-
-/// Returns a plot's width: two plots fit side by side while there is room for their names.
-int width(std::size_t shown) {
-  return shown <= 3 ? 300 : shown <= 8 ? 485 : 980;
-}
-
-/// Plots the left part of Figure 10: means next to the references.
-std::string means(const SessionReport& r, int kind, const std::vector<std::size_t>& shown) {
-  const auto [per_unit, unit] = paper_unit(kind);
-  const double factor = per_unit;
-  std::vector<SvgSeries> groups;
-  const auto reference = [&](const char* name, int color, const std::vector<double>& values) {
-    SvgSeries group{name, color, SvgMark::bars, {}, {}};
-    for (const std::size_t p : shown) group.y.push_back(factor * values[p]);
-    if (std::any_of(group.y.begin(), group.y.end(), [](double v) { return std::isfinite(v); }))
-      groups.push_back(std::move(group));
-  };
-  reference("reference-dynamic", 4, r.reference_dynamic);
-  reference(r.reference_from_drawings ? "reference-static" : "start value", 6, r.reference_static);
-  for (std::size_t s = 0; s < r.compared.size(); ++s) {
-    groups.push_back({r.compared[s].name, static_cast<int>(s), SvgMark::bars, {}, {}});
-    for (const std::size_t p : shown) {
-      const ParameterSummary one = summarise(r.estimates, p, r.compared[s].boxes);
-      groups.back().y.push_back(factor * one.mean);
-      groups.back().error.push_back(factor * one.std_error);
-    }
-  }
-  SvgPlot plot(std::string("means: ") + kKindName[kind], names(r, shown),
-               {std::string(kKindName[kind]) + ", " + unit, 0}, width(shown.size()), 300);
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    for (std::size_t i = 0; i < shown.size(); ++i)
-      groups[g].x.push_back(static_cast<double>(i + 1) + offset(g, groups.size()));
-    plot.add(groups[g]);
-  }
-  return plot.svg();
-}
-
-/// Plots the right part of Figure 10: boxplots of the windows.
-std::string boxes(const SessionReport& r, int kind, const std::vector<std::size_t>& shown) {
-  const auto [factor, unit] = paper_unit(kind);
-  SvgPlot plot(fmt::format("windows: {}", kKindName[kind]), names(r, shown),
-               {std::string(kKindName[kind]) + ", " + unit}, width(shown.size()), 300);
-  for (std::size_t s = 0; s < r.compared.size(); ++s) {
-    for (std::size_t i = 0; i < shown.size(); ++i) {
-      ParameterSummary one = summarise(r.estimates, shown[i], r.compared[s].boxes);
-      for (double* value : {&one.boxplot.q1, &one.boxplot.median, &one.boxplot.q3,
-                            &one.boxplot.whisker_low, &one.boxplot.whisker_high})
-        *value *= factor;
-      for (double& value : one.outliers) value *= factor;
-      plot.add(SvgBox{static_cast<double>(i + 1) + offset(s, r.compared.size()), one.boxplot,
-                      one.outliers, static_cast<int>(s)});
-    }
-    plot.add(SvgSeries{r.compared[s].name,
-                       static_cast<int>(s),
-                       SvgMark::line,
-                       {estimator::kNaN},
-                       {estimator::kNaN}});
-  }
-  bool first = true;
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    const double at = factor * r.reference_static[shown[i]];
-    if (!std::isfinite(at)) continue;
-    const double x = static_cast<double>(i + 1);
-    plot.add(SvgSeries{!first                      ? ""
-                       : r.reference_from_drawings ? "reference-static"
-                                                   : "start value",
-                       6,
-                       SvgMark::dashed,
-                       {x - 0.45, x + 0.45},
-                       {at, at}});
-    first = false;
-  }
-  return plot.svg();
+  coherence.add(SvgSeries{"", 0, SvgMark::line, t.frequency_hz, t.coherence, {}, "measured"});
+  to.push_back({"transfer-" + direction + when, std::move(gain)});
+  to.push_back({"coherence-" + direction + when, std::move(coherence)});
 }
 
 /// Plots peak accelerations or drifts over the building's height, with measured floors marked.
-std::string over_height(const SessionFloors& floors, const estimator::Structure& s,
-                        const char* title, const char* unit, bool drift) {
-  SvgPlot plot(title, {unit, 0}, {"floor", 0, s.stories + 0.5}, 485, 480);
+Picture over_height(const SessionFloors& floors, const estimator::Structure& s, bool drift) {
+  SvgPlot plot(drift ? "peak story drift" : "peak acceleration",
+               {drift ? "peak story drift, % of the height" : "peak acceleration, m/s^2", 0},
+               {"floor", 0, s.stories + 0.5}, 485, 480);
   for (const int along : framed_directions(s)) {
     SvgSeries line{along == 0 ? "along x" : "along y", along, SvgMark::line, {}, {}};
-    SvgSeries dots{"", along, SvgMark::dots, {}, {}};
+    SvgSeries dots{"", along, SvgMark::dots, {}, {}, {}, "measured along "};
+    dots.told += along == 0 ? "x" : "y";
     for (int floor = drift ? 1 : 0; floor <= s.stories; ++floor) {
       const auto at = static_cast<std::size_t>(floor), d = static_cast<std::size_t>(along);
       const double value =
@@ -206,7 +116,13 @@ std::string over_height(const SessionFloors& floors, const estimator::Structure&
     plot.add(std::move(line));
     plot.add(std::move(dots));
   }
-  return plot.svg();
+  return {drift ? "floors-drift" : "floors-acceleration", std::move(plot)};
+}
+
+std::vector<Picture> floor_pictures(const SessionReport& r) {
+  if (!r.floors) return {};
+  const estimator::Structure& s = r.config->pipeline.structure;
+  return {over_height(*r.floors, s, false), over_height(*r.floors, s, true)};
 }
 
 std::string left_out_table(const SessionFloors& floors) {
@@ -239,35 +155,118 @@ std::string largest_error(const SessionFloors& floors) {
 void add_loop(const SessionReport& r, const FrameLoop& loop, std::size_t stage, int color,
               SvgPlot& plot) {
   std::vector<double> d, f;
+  const double per_n = r.units.of_force().first;
   const auto stride =
       std::max<std::size_t>(1, loop.drift_m.size() / static_cast<std::size_t>(kMaxLoopPoints));
   for (std::size_t i = 0; i < loop.drift_m.size(); i += stride) {
     d.push_back(1e3 * loop.drift_m[i]);
-    f.push_back(loop.force_n[i]);
+    f.push_back(per_n * loop.force_n[i]);
   }
-  plot.add(SvgSeries{"", color, SvgMark::thin_line, d, f});
+  const std::string& name = r.compared[stage].name;
+  plot.add(SvgSeries{"", color, SvgMark::thin_line, d, f, {}, name});
   if (loop.parameter < 0) return;
   const auto p = static_cast<std::size_t>(loop.parameter);
   const double k = summarise(r.estimates, p, r.compared[stage].whole).boxplot.median;
-  const double end = loop.largest_drift_m;
+  const double end = loop.largest_drift_m, force = per_n * k * end;
   if (std::isfinite(k))
-    plot.add(SvgSeries{"", color, SvgMark::dashed, {-1e3 * end, 1e3 * end}, {-k * end, k * end}});
+    plot.add(SvgSeries{"",
+                       color,
+                       SvgMark::dashed,
+                       {-1e3 * end, 1e3 * end},
+                       {-force, force},
+                       {},
+                       name + ": identified stiffness"});
+}
+
+/// Returns the words for a loop's place: "story 1, north wall", or "story 1, x" for all frames.
+std::string loop_name(const SessionReport& r, const FrameLoop& loop) {
+  return loop.parameter < 0 ? loop.name : place_of(r, static_cast<std::size_t>(loop.parameter));
+}
+
+/// Returns the stages whose loops are shown.
+std::vector<const StageLoops*> shown_loops(const SessionReport& r) {
+  std::vector<const StageLoops*> out;
+  for (const StageLoops& of : r.loops)
+    if (of.loops.reason.empty()) out.push_back(&of);
+  return out;
+}
+
+std::vector<Picture> loop_pictures(const SessionReport& r) {
+  const std::vector<const StageLoops*> shown = shown_loops(r);
+  if (shown.empty()) return {};
+  std::vector<Picture> out;
+  const std::vector<FrameLoop>& frames = shown.front()->loops.loops;
+  for (std::size_t i = 0; i < std::min(frames.size(), kMaxLoops); ++i) {
+    SvgPlot plot(loop_name(r, frames[i]), {"story drift, mm"},
+                 {"force, " + r.units.of_force().second}, 242, 210);
+    int color = 0;
+    for (const StageLoops* of : shown) add_loop(r, of->loops.loops[i], of->stage, color++, plot);
+    out.push_back({"loop-" + frames[i].name, std::move(plot)});
+  }
+  return out;
+}
+
+/// Returns the parameters of one sort that have a history, and how many are left out.
+std::pair<std::vector<std::size_t>, std::size_t> with_history(const SessionReport& r,
+                                                              bool stiffness) {
+  std::vector<std::size_t> out;
+  for (std::size_t p = 0; p < r.estimates.parameters(); ++p)
+    if (is_stiffness_kind(r.estimates.table.kind[p]) == stiffness) out.push_back(p);
+  const std::size_t all = out.size();
+  out.resize(std::min(all, kMaxHistories));
+  return {out, all - out.size()};
+}
+
+std::vector<Picture> motion_pictures(const SessionReport& r) {
+  if (!r.motion || !r.config) return {};
+  return {motion_picture(r, true), motion_picture(r, false)};
+}
+
+/// Returns the ends of the windows, seconds of the session.
+std::vector<double> window_seconds(const SessionReport& r) {
+  std::vector<double> out;
+  for (const std::int64_t end : r.estimates.end_us) out.push_back(session_seconds(r, end));
+  return out;
+}
+
+std::vector<Picture> history_pictures(const SessionReport& r, bool stiffness) {
+  const std::vector<double> t = window_seconds(r);
+  std::vector<Picture> out;
+  for (const std::size_t p : with_history(r, stiffness).first) out.push_back(history(r, p, t));
+  return out;
+}
+
+Picture residual_picture(const SessionReport& r) {
+  SvgPlot plot("", {"time, s"}, {"residual / response"}, 980, 150);
+  plot.add(SvgSeries{
+      "", 6, SvgMark::thin_line, window_seconds(r), r.estimates.residual_ratio, {}, "residual"});
+  return {"residual", std::move(plot)};
+}
+
+std::vector<Picture> transfer_pictures(const SessionReport& r) {
+  std::vector<Picture> out;
+  for (const TransferFunction& t : r.transfer) add_quotients(t, "", out);
+  for (const TransferFunction& t : r.transfer_after) add_quotients(t, "-after", out);
+  return out;
 }
 
 /// Returns a heading with the stage's name and a table of the largest drifts and forces.
 std::string loop_table(const SessionReport& r, const StageLoops& of) {
   std::vector<std::vector<std::string>> rows;
+  const auto [per_n, force_unit] = r.units.of_force();
   for (const FrameLoop& loop : of.loops.loops) {
     const double height =
         r.config->pipeline.structure.story_height[static_cast<std::size_t>(loop.story - 1)];
     double largest_force = 0;
     for (const double f : loop.force_n) largest_force = std::max(largest_force, std::abs(f));
-    rows.push_back({html_text(loop.name), fmt::format("{:.3f}", 1e3 * loop.largest_drift_m),
+    rows.push_back({html_text(loop_name(r, loop)),
+                    fmt::format("{:.3f}", 1e3 * loop.largest_drift_m),
                     fmt::format("{:.3f}", 100 * loop.largest_drift_m / height),
-                    fmt::format("{:.2f}", largest_force)});
+                    fmt::format("{:.4g}", per_n * largest_force)});
   }
   return "<h3>" + html_text(r.compared[of.stage].name) + "</h3>\n" +
-         html_table({"frame", "largest drift, mm", "of the story height, %", "largest force, N"},
+         html_table({"frame", "largest drift, mm", "of the story height, %",
+                     "largest force, " + force_unit},
                     rows);
 }
 
@@ -276,22 +275,11 @@ std::string loop_table(const SessionReport& r, const StageLoops& of) {
 std::string histories_section(const SessionReport& r) {
   std::string out = "<h2>Histories</h2>\n";
   if (r.motion && r.config)
-    out += html_figure({motion_plot(r, true), motion_plot(r, false)},
-                       "Measured acceleration, absolute.");
+    out += html_figure(motion_pictures(r), "Measured acceleration, absolute.");
   out += stages_section(r);
-  std::vector<double> t;
-  for (const std::int64_t end : r.estimates.end_us) t.push_back(session_seconds(r, end));
   for (const bool stiffness : {true, false}) {
-    std::vector<std::string> plots;
-    std::size_t left_out = 0;
-    for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
-      const int kind = r.estimates.table.kind[p];
-      if (is_stiffness_kind(kind) != stiffness) continue;
-      if (plots.size() < kMaxHistories)
-        plots.push_back(history(r, p, t));
-      else
-        ++left_out;
-    }
+    const std::vector<Picture> plots = history_pictures(r, stiffness);
+    const std::size_t left_out = with_history(r, stiffness).second;
     if (plots.empty()) continue;
     out += html_figure(
         plots, fmt::format(
@@ -303,19 +291,15 @@ std::string histories_section(const SessionReport& r) {
                    left_out > 0 ? fmt::format(" {} more parameters are in the log.", left_out)
                                 : std::string()));
   }
-  SvgPlot residual("", {"time, s"}, {"residual / response"}, 980, 150);
-  residual.add(SvgSeries{"", 6, SvgMark::thin_line, t, r.estimates.residual_ratio});
-  return out + html_figure({residual.svg()},
+  return out + html_figure(std::vector<Picture>{residual_picture(r)},
                            "Part of the response that the model does not explain, rms over rms.");
 }
 
 std::string transfer_section(const SessionReport& r) {
   const bool changed = !r.transfer_after.empty();
-  std::vector<std::string> plots;
   std::vector<std::vector<std::string>> rows;
   const auto add = [&](const std::vector<TransferFunction>& transfer, const char* when) {
     for (const TransferFunction& t : transfer) {
-      plots.push_back(quotient_plots(t));
       rows.push_back({std::string(letter(t.direction)) + when,
                       or_dash(t.measured_mode_hz, "{:.3f}"), or_dash(t.model_mode_hz, "{:.3f}"),
                       or_dash(t.mac, "{:.2f}"), or_dash(t.stiffness_ratio(), "{:.3f}"),
@@ -327,7 +311,7 @@ std::string transfer_section(const SessionReport& r) {
   if (rows.empty()) return "";
   return "<h2>Transfer functions</h2>\n" +
          html_figure(
-             plots,
+             transfer_pictures(r),
              "Mean of the top floor's frames over the base, from the longest forced stage. "
              "The model has the reference-static values and moves with the measured base.") +
          html_table({"direction", "measured mode, Hz", "model's mode, Hz", "likeness (MAC)",
@@ -342,58 +326,44 @@ std::string transfer_section(const SessionReport& r) {
 std::string loops_section(const SessionReport& r) {
   if (r.loops.empty()) return "";
   std::string out = "<h2>Drift and restoring force</h2>\n", tables, spans;
-  std::vector<const StageLoops*> shown;
+  const std::vector<const StageLoops*> shown = shown_loops(r);
   for (const StageLoops& of : r.loops) {
     if (!of.loops.reason.empty()) {
       out += "<p>Not shown for " + html_text(r.compared[of.stage].name) + ": " +
              html_text(of.loops.reason) + ".</p>\n";
       continue;
     }
-    spans += fmt::format("{}{}, {:.1f} s to {:.1f} s", shown.empty() ? "" : "; ",
-                         shown.empty() ? html_text(r.compared[of.stage].name)
+    spans += fmt::format("{}{}, {:.1f} s to {:.1f} s", spans.empty() ? "" : "; ",
+                         spans.empty() ? html_text(r.compared[of.stage].name)
                                        : "orange: " + html_text(r.compared[of.stage].name),
                          session_seconds(r, of.loops.from_us), session_seconds(r, of.loops.to_us));
-    shown.push_back(&of);
     tables += loop_table(r, of);
   }
   if (shown.empty()) return out;
-  std::vector<std::string> plots;
-  const std::vector<FrameLoop>& frames = shown.front()->loops.loops;
-  for (std::size_t i = 0; i < std::min(frames.size(), kMaxLoops); ++i) {
-    SvgPlot plot(frames[i].name, {"story drift, mm"}, {"force, N"}, 242, 210);
-    int color = 0;
-    for (const StageLoops* of : shown) add_loop(r, of->loops.loops[i], of->stage, color++, plot);
-    plots.push_back(plot.svg());
-  }
+  const std::size_t frames = shown.front()->loops.loops.size();
   return out +
          html_figure(
-             plots,
+             loop_pictures(r),
              fmt::format("The strongest motion ({}): restoring force with damping over story "
                          "drift, above {:g} Hz; dashed: the identified stiffness (median).{}",
                          spans, r.config->pipeline.options.high_pass_hz,
-                         frames.size() > kMaxLoops ? " Only the first frames are shown." : "")) +
+                         frames > kMaxLoops ? " Only the first frames are shown." : "")) +
          tables;
 }
 
-std::string figure_10_section(const SessionReport& r) {
-  std::string out = "<h2>Identified stiffness and damping</h2>\n";
-  for (int kind = 0; kind < 4; ++kind) {
-    const std::vector<std::size_t> all = of_kind(r, kind);
-    for (std::size_t from = 0; from < all.size(); from += kMaxPerPlot) {
-      const std::vector<std::size_t> shown(
-          all.begin() + static_cast<std::ptrdiff_t>(from),
-          all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), from + kMaxPerPlot)));
-      std::string caption = fmt::format(
-          "{}: on the left the means, with whiskers of one standard error of a window; on the "
-          "right a boxplot per parameter (median, quartiles, adjacent values, outliers as +), of ",
-          kKindName[kind]);
-      for (std::size_t s = 0; s < r.compared.size(); ++s)
-        caption += fmt::format(
-            "{}{} windows of {:g} s in {}", s == 0 ? "" : " and ", r.compared[s].boxes.size(),
-            r.estimates.table.window_rows / r.estimates.table.rate_hz, r.compared[s].name);
-      out += html_figure({means(r, kind, shown), boxes(r, kind, shown)}, caption + ".");
-    }
-  }
+std::vector<Picture> session_pictures(const SessionReport& r) {
+  std::vector<Picture> out = change_pictures(r);
+  const auto add = [&](std::vector<Picture> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(out));
+  };
+  add(parameter_pictures(r));
+  add(floor_pictures(r));
+  add(loop_pictures(r));
+  add(transfer_pictures(r));
+  add(motion_pictures(r));
+  add(history_pictures(r, true));
+  add(history_pictures(r, false));
+  add({residual_picture(r)});
   return out;
 }
 
@@ -403,8 +373,7 @@ std::string floors_section(const SessionReport& r) {
   const estimator::Structure& s = r.config->pipeline.structure;
   std::string out =
       "<h2>Every floor</h2>\n" +
-      html_figure({over_height(floors, s, "peak acceleration", "m/s^2", false),
-                   over_height(floors, s, "peak story drift", "% of the story height", true)},
+      html_figure(floor_pictures(r),
                   fmt::format("Dots: floors with a channel. The others are computed from the "
                               "measured floors above and below with the identified stiffnesses.{}",
                               largest_error(floors)));

@@ -12,6 +12,7 @@
 #include "daemon/base/words.h"
 #include "daemon/monitor/estimates/estimate_table.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
+#include "daemon/monitor/events/change_words.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"
 #include "estimator/structure/parameter_table.h"
@@ -180,9 +181,10 @@ std::string parameter_section(const SessionReport& r) {
     std::vector<std::vector<std::string>> rows;
     const ModelFitTold* fit = model_fit_at_end(r.estimates, stage.whole);
     for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
-      const auto [factor, unit] = paper_unit(r.estimates.table.kind[p]);
+      const auto [factor, unit] = r.units.of(r.estimates.table.kind[p]);
       const ParameterSummary one = summarise(r.estimates, p, stage.whole);
-      std::vector<std::string> row{html_text(r.estimates.table.name[p]), unit};
+      std::vector<std::string> row{html_text(place_of(r, p)), html_text(r.estimates.table.name[p]),
+                                   unit};
       for (const double value : {r.reference_static[p], r.reference_dynamic[p], one.mean})
         row.push_back(or_dash(factor * value, "{:#.4g}"));
       row.push_back(or_dash(factor * one.std_error, "{:#.2g}"));
@@ -194,12 +196,13 @@ std::string parameter_section(const SessionReport& r) {
       row.push_back(without(r, p, stage.whole));
       rows.push_back(std::move(row));
     }
-    out += "<h3>" + html_text(stage.name) + "</h3>\n" +
-           html_table(
-               {"parameter", "unit", r.reference_from_drawings ? "reference-static" : "start value",
-                "reference-dynamic", "mean", "standard error", "model's error", "q1", "median",
-                "q3", "windows with value, %", "median to reference, %", "without, mostly"},
-               rows);
+    out +=
+        "<h3>" + html_text(stage.name) + "</h3>\n" +
+        html_table({"place", "parameter", "unit",
+                    r.reference_from_drawings ? "reference-static" : "start value",
+                    "reference-dynamic", "mean", "standard error", "model's error", "q1", "median",
+                    "q3", "windows with value, %", "median to reference, %", "without, mostly"},
+                   rows);
   }
   return out;
 }
@@ -274,6 +277,8 @@ std::string session_report_html(const SessionReport& r) {
 
 void evaluate(SessionReport& r) {
   const std::size_t count = r.estimates.parameters();
+  r.units = ReportUnits(r.estimates.table);
+  if (r.config) r.labels = frame_labels(r.config->pipeline.structure);
   r.reference_static = r.estimates.table.design;
   const Eigen::VectorXd design = r.config ? drawn(r.config->pipeline) : Eigen::VectorXd();
   if (design.size() == static_cast<Eigen::Index>(count)) {
@@ -320,16 +325,12 @@ double session_seconds(const SessionReport& r, std::int64_t time_us) {
   return 1e-6 * static_cast<double>(time_us - origin);
 }
 
-bool is_stiffness_kind(int kind) {
-  const auto k = static_cast<estimator::ParameterKind>(kind);
-  return k == estimator::ParameterKind::frame_stiffness ||
-         k == estimator::ParameterKind::panel_stiffness ||
-         k == estimator::ParameterKind::bending_stiffness;
+std::string place_of(const SessionReport& r, std::size_t p) {
+  return place_words(r.estimates.table.name[p], r.labels);
 }
 
-std::pair<double, std::string> paper_unit(int kind) {
-  constexpr const char* kUnits[] = {"kN/m", "kN/(rad*m)", "N*s/m", "N*s/(rad*m)", "kN*m/rad"};
-  return {is_stiffness_kind(kind) ? 1e-3 : 1.0, kUnits[std::clamp(kind, 0, 4)]};
+std::string element_of(const SessionReport& r, std::size_t p) {
+  return element_words(r.estimates.table, p, r.labels);
 }
 
 std::string stages_section(const SessionReport& r) {

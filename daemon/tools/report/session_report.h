@@ -6,9 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/base/svg_plot.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimates/session_estimates.h"
 #include "daemon/tools/report/frame_loops.h"
+#include "daemon/tools/report/report_units.h"
 #include "daemon/tools/report/session_changes.h"
 #include "daemon/tools/report/session_file.h"
 #include "daemon/tools/report/session_floors.h"
@@ -61,6 +63,8 @@ struct SessionReport {
   std::optional<DriftReport> drifts;    ///< with motion
   std::optional<SessionFloors> floors;  ///< with motion, for a building of groups
   std::vector<ReportFile> files;
+  ReportUnits units;
+  FrameLabels labels;  ///< what people call the frames; from config
 };
 
 /// Computes the fields that follow from estimates, config and motion.
@@ -76,6 +80,11 @@ std::string verdict_sentence(const SessionReport& report);
 /// out. Returns "" when there is nothing to say.
 std::string bending_sentence(const SessionReport& report);
 
+/// Returns every picture of the page, with stable names.
+std::vector<Picture> session_pictures(const SessionReport& report);
+std::vector<Picture> change_pictures(const SessionReport& report);     ///< of verdict_section()
+std::vector<Picture> parameter_pictures(const SessionReport& report);  ///< of figure_10_section()
+
 // Each section below is HTML, "" when it has nothing to show.
 std::string verdict_section(const SessionReport& report);
 std::string events_section(const SessionReport& report);
@@ -88,10 +97,10 @@ std::string floors_section(const SessionReport& report);
 
 /// Returns the seconds since the session's first window or sample.
 double session_seconds(const SessionReport& report, std::int64_t time_us);
-/// Returns true for stiffnesses of frames, of panels and against bending. kind: of a
-/// parameter_table_t.
-bool is_stiffness_kind(int kind);
-/// Returns the factor and the unit in which a kind of parameter is printed: 1e-3, "kN/m".
-std::pair<double, std::string> paper_unit(int kind);
+/// Returns the words for a parameter's place: "story 1, north wall".
+std::string place_of(const SessionReport& report, std::size_t parameter);
+/// Returns the words for a stiffness, "north wall (y2) of story 1", and the name of any other
+/// parameter.
+std::string element_of(const SessionReport& report, std::size_t parameter);
 
 }  // namespace framewatch::daemon

@@ -38,7 +38,7 @@ double error_percent(const ElementChange& c) {
 
 /// Returns "frame y2 of story 1 has lost 15.0 % (+-0.4 %) of its stiffness".
 std::string what(const SessionReport& r, const ElementChange& c) {
-  const std::string element = element_words(r.estimates.table, c.parameter);
+  const std::string element = element_of(r, c.parameter);
   const bool several = element.rfind("stories", 0) == 0;
   if (!c.sized())
     return element + (several ? " are" : " is") + " changing, by an amount not known yet";
@@ -104,7 +104,7 @@ std::string sensors_sentence(const SessionReport& r) {
 }
 
 /// Draws the change of every element with its error.
-std::string change_chart(const SessionReport& r) {
+std::vector<Picture> change_chart(const SessionReport& r) {
   SvgAxis names{""};
   SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
   const ReportStage *before = nullptr, *after = nullptr;
@@ -112,7 +112,7 @@ std::string change_chart(const SessionReport& r) {
     if (stage.kind != r.compared.front().kind) continue;
     (stage.after ? after : before) = &stage;
   }
-  if (before == nullptr || after == nullptr) return "";
+  if (before == nullptr || after == nullptr) return {};
   std::vector<std::size_t> shown;
   for (const JudgedElement& j : r.judged) shown.push_back(j.parameter);
   for (const ElementChange& c : r.changes) shown.push_back(c.parameter);
@@ -123,7 +123,7 @@ std::string change_chart(const SessionReport& r) {
     const ParameterSummary a = summarise(r.estimates, p, before->whole),
                            b = summarise(r.estimates, p, after->whole);
     if (!std::isfinite(a.mean) || !std::isfinite(b.mean)) continue;
-    names.categories.push_back(r.estimates.table.name[p]);
+    names.categories.push_back(place_of(r, p));
     bars.x.push_back(static_cast<double>(names.categories.size()));
     const auto change = std::find_if(r.changes.begin(), r.changes.end(),
                                      [&](const auto& c) { return c.parameter == p && c.sized(); });
@@ -137,12 +137,11 @@ std::string change_chart(const SessionReport& r) {
                               ? std::hypot(error(a, before->whole), error(b, after->whole)) / a.mean
                               : change->std_error));
   }
-  if (names.categories.empty()) return "";
+  if (names.categories.empty()) return {};
   SvgPlot plot("change of every stiffness", names, {"change, %"}, 980, 240);
   plot.add(bars);
   plot.add_rule(0);
-  return html_figure({plot.svg()},
-                     "Stiffness after the change against before it, with its standard error.");
+  return {{"change", std::move(plot)}};
 }
 
 /// Lists the recoveries. Frames soften while they move strongly; recovering is not a change of the
@@ -152,9 +151,8 @@ std::string recovery_sentence(const SessionReport& r) {
   std::string out = "While the motion died away ";
   for (std::size_t i = 0; i < std::min(recoveries.size(), kMaxNamed); ++i)
     out += fmt::format("{}{}{} by {:.1f} % (+-{:.1f} %)", i == 0 ? "" : ", ",
-                       element_words(r.estimates.table, recoveries[i].parameter),
-                       i == 0 ? " grew stiffer again" : "", 100 * recoveries[i].ratio,
-                       error_percent(recoveries[i]));
+                       element_of(r, recoveries[i].parameter), i == 0 ? " grew stiffer again" : "",
+                       100 * recoveries[i].ratio, error_percent(recoveries[i]));
   if (recoveries.size() > kMaxNamed)
     out += fmt::format(", and {} more", recoveries.size() - kMaxNamed);
   return out +
@@ -163,20 +161,20 @@ std::string recovery_sentence(const SessionReport& r) {
 }
 
 /// Draws the stiffness of a changed element over time, with its means as lines.
-std::string change_history(const SessionReport& r, const ElementChange& c) {
-  const auto [factor, unit] = paper_unit(r.estimates.table.kind[c.parameter]);
+Picture change_history(const SessionReport& r, const ElementChange& c) {
+  const auto [factor, unit] = r.units.of(r.estimates.table.kind[c.parameter]);
   std::vector<double> t, v, before, after;
   for (std::size_t w = 0; w < r.estimates.windows(); ++w) {
     t.push_back(session_seconds(r, r.estimates.end_us[w]));
     v.push_back(factor * r.estimates.value[c.parameter][w]);
   }
   const double at = session_seconds(r, c.since_us);
-  SvgAxis y{unit};
+  SvgAxis y{"stiffness, " + unit};
   const double low = factor * std::min(c.before.value, c.after.value),
                high = factor * std::max(c.before.value, c.after.value);
   y.low = low - 0.6 * (high - low);
   y.high = high + 0.6 * (high - low);
-  SvgPlot plot(element_words(r.estimates.table, c.parameter), {"time, s"}, y, 980, 220);
+  SvgPlot plot(element_of(r, c.parameter), {"time, s"}, y, 980, 220);
   plot.add(SvgSeries{"each window, at its end", 5, SvgMark::thin_line, t, v});
   plot.add(SvgSeries{"before",
                      0,
@@ -185,20 +183,27 @@ std::string change_history(const SessionReport& r, const ElementChange& c) {
                      {factor * c.before.value, factor * c.before.value}});
   plot.add(SvgSeries{
       "after", 1, SvgMark::line, {at, t.back()}, {factor * c.after.value, factor * c.after.value}});
-  return html_figure({plot.svg()}, html_text(with_capital(what(r, c)) + " " + since(r, c.since_us) +
-                                             " (" + r.estimates.table.name[c.parameter] + ")."));
+  return {"change-" + r.estimates.table.name[c.parameter], std::move(plot)};
+}
+
+/// Returns the largest changes that have windows before and after them.
+std::vector<ElementChange> drawn_changes(const SessionReport& r) {
+  std::vector<ElementChange> out = largest_first(r.changes);
+  out.resize(std::min(out.size(), kMaxNamed));
+  std::erase_if(out, [](const ElementChange& c) { return !c.measured(); });
+  return out;
 }
 
 std::string change_table(const SessionReport& r) {
   std::vector<std::vector<std::string>> rows;
   for (const ElementChange& c : r.changes) {
-    const auto [factor, unit] = paper_unit(r.estimates.table.kind[c.parameter]);
+    const auto [factor, unit] = r.units.of(r.estimates.table.kind[c.parameter]);
     const auto mean = [factor = factor](const estimator::WindowMean& m) {
       return m.count > 0 ? with_error(factor * m.value, factor * m.std_error) : std::string("-");
     };
     rows.push_back(
-        {html_text(element_words(r.estimates.table, c.parameter)),
-         html_text(r.estimates.table.name[c.parameter]), unit, mean(c.before), mean(c.after),
+        {html_text(element_of(r, c.parameter)), html_text(r.estimates.table.name[c.parameter]),
+         unit, mean(c.before), mean(c.after),
          c.sized() ? change_with_error(c.ratio, 0.01 * error_percent(c)) : "not known yet",
          fmt::format("{:.1f}", session_seconds(r, c.since_us))});
   }
@@ -307,20 +312,31 @@ std::string verdict_section(const SessionReport& r) {
   out += html_paragraph(bending_sentence(r));
   if (r.estimates.watch) out += html_paragraph(why_no_watch(r));
   out += html_paragraph(others_sentence(r) + sensors_sentence(r));
-  out += change_chart(r);
-  const std::vector<ElementChange> changes = largest_first(r.changes);
-  for (std::size_t i = 0; i < std::min(changes.size(), kMaxNamed); ++i)
-    if (changes[i].measured()) out += change_history(r, changes[i]);
+  if (const std::vector<Picture> chart = change_chart(r); !chart.empty())
+    out += html_figure(chart,
+                       "Stiffness after the change against before it, with its standard error.");
+  for (const ElementChange& c : drawn_changes(r))
+    out += html_figure(std::vector<Picture>{change_history(r, c)},
+                       html_text(with_capital(what(r, c)) + " " + since(r, c.since_us) + " (" +
+                                 r.estimates.table.name[c.parameter] + ")."));
   return out + change_table(r);
+}
+
+std::vector<Picture> change_pictures(const SessionReport& r) {
+  std::vector<Picture> out = change_chart(r);
+  for (const ElementChange& c : drawn_changes(r)) out.push_back(change_history(r, c));
+  return out;
 }
 
 std::string events_section(const SessionReport& r) {
   std::vector<std::vector<std::string>> rows;
   for (const event_t& e : r.estimates.events) {
     if (rows.size() == kMaxEvents) break;
-    rows.push_back({fmt::format("{:.2f}", session_seconds(r, e.time_us)),
-                    word(kEventStates, e.state), word(kSeverities, e.severity), html_text(e.place),
-                    html_text(e.message)});
+    rows.push_back(
+        {fmt::format("{:.2f}", session_seconds(r, e.time_us)), word(kEventStates, e.state),
+         word(kSeverities, e.severity),
+         html_text(e.kind == "stiffness_change" ? place_words(e.place, r.labels) : e.place),
+         html_text(e.message)});
   }
   if (rows.empty()) {
     std::string why = why_no_watch(r);

@@ -74,6 +74,16 @@ TEST(StructureProblems, NegativeStoriesAreNamedAndHarmless) {
   EXPECT_EQ(fields.front(), "stories");
 }
 
+TEST(StructureProblems, EveryFrameOrNoneHasALabelOfItsOwn) {
+  const auto labelled = [](const std::vector<std::string>& labels) {
+    return fields_after([&](Structure& s) { s.labels_x = labels; });
+  };
+  EXPECT_EQ(labelled({"a", "b", "c", "d"}), Fields{});
+  EXPECT_EQ(labelled({"a", "b"}), Fields{"labels_x"});
+  EXPECT_EQ(labelled({"a", "b", "c", "a"}), Fields{"labels_x"});
+  EXPECT_EQ(labelled({"a", "b", "c", "x1"}), Fields{"labels_x"}) << "a frame's name";
+}
+
 TEST(StructureProblems, NameFieldAndRule) {
   Structure s = test::table1();
   s.span_x = {1, 2, 3};

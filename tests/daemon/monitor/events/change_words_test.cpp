@@ -62,6 +62,19 @@ TEST(PlaceWords, DescribeThePlaceOfAParameter) {
   EXPECT_EQ(place_words("kry"), "frames along y");
 }
 
+TEST(ChangeWords, FramesHaveTheLabelsThatPeopleGave) {
+  estimator::Structure s;
+  s.frames_x = {"y1", "y2"};
+  s.frames_y = {"x1"};
+  s.labels_x = {"south wall", "north wall"};
+  const FrameLabels labels = frame_labels(s);
+  EXPECT_EQ(place_words("kx_1_y2", labels), "story 1, north wall");
+  EXPECT_EQ(element_words("kx_1_y2", labels), "north wall (y2) of story 1");
+  EXPECT_EQ(element_words("cx_2to4_y1", labels), "south wall (y1) of stories 2 to 4");
+  EXPECT_EQ(place_words("ky_1_x1", labels), "story 1, frame x1") << "no label was given";
+  EXPECT_EQ(place_words("kx_1to5_y1+y2", labels), "stories 1 to 5, frames y1+y2");
+}
+
 TEST(PlaceWords, DescribeTheElementOfAParameter) {
   EXPECT_EQ(element_words("kx_1_y2"), "frame y2 of story 1");
   EXPECT_EQ(element_words("Gk_2_x1y1"), "floor panel x1y1 of floor 2");

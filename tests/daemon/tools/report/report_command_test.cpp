@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 #include <sstream>
 
 #include <fmt/core.h>
@@ -219,6 +220,45 @@ TEST(ReportCommand, NeedsOnlyEstimates) {
   EXPECT_NE(html.find("all of it"), std::string::npos);
   EXPECT_NE(html.find("&lt;b&gt;"), std::string::npos);
   EXPECT_EQ(html.find("reference-dynamic /"), std::string::npos);
+}
+
+TEST(ReportCommand, RefusesAPageWithTheEndingOfAPicture) {
+  EXPECT_EQ(report(session().arguments("x.png")), 2);
+  EXPECT_FALSE(std::filesystem::exists(session().directory + "/x.png"));
+}
+
+TEST(SessionReport, NamesEveryPictureAndPlace) {
+  SessionReport r = session().evaluated();
+  r.labels = {{"y2", "north wall"}};
+  std::set<std::string> names;
+  for (const Picture& picture : session_pictures(r)) {
+    EXPECT_TRUE(names.insert(picture.name).second) << picture.name;
+    EXPECT_GT(picture.plot.csv().size(), 100u) << picture.name;
+    // A code such as kx_1_y2 means nothing to a reader.
+    EXPECT_EQ(picture.plot.svg().find("kx_"), std::string::npos) << picture.name;
+    EXPECT_EQ(picture.plot.csv().find("kx_"), std::string::npos) << picture.name;
+    EXPECT_NE(picture.plot.csv().rfind("\n,", 0), 0u) << "a series of the CSV has a name";
+  }
+  for (const char* wanted :
+       {"means-frame-stiffness", "windows-panel-damping", "transfer-x", "coherence-y",
+        "loop-kx_1_y2", "history-kx_1_y2", "acceleration-base", "acceleration-top", "residual"})
+    EXPECT_TRUE(names.contains(wanted)) << wanted;
+  EXPECT_NE(session_report_html(r).find("story 1, north wall"), std::string::npos);
+}
+
+TEST(ReportUnits, FitTheBuildingOrTheModel) {
+  parameter_table_t table{};
+  table.kind = {0, 2};
+  table.design = {999e3, 1e9};
+  EXPECT_EQ(ReportUnits(table).of(0), std::pair(1e-3, std::string("kN/m")));
+  EXPECT_EQ(ReportUnits(table).of(2), std::pair(1.0, std::string("N*s/m")));
+  EXPECT_EQ(ReportUnits(table).of_force(), std::pair(1.0, std::string("N")));
+  table.design = {1e6, 0};
+  EXPECT_EQ(ReportUnits(table).of(0), std::pair(1e-6, std::string("MN/m")));
+  EXPECT_EQ(ReportUnits(table).of(1), std::pair(1e-6, std::string("MN/(rad*m)")));
+  EXPECT_EQ(ReportUnits(table).of(4), std::pair(1e-6, std::string("MN*m/rad")));
+  EXPECT_EQ(ReportUnits(table).of(2), std::pair(1e-3, std::string("kN*s/m")));
+  EXPECT_EQ(ReportUnits(table).of_force(), std::pair(1e-3, std::string("kN")));
 }
 
 TEST(ReportCommand, ReportsATruncatedLog) {
