@@ -139,8 +139,8 @@ class Prediction {
     read_ = Ldlt(MatrixXd(from * from.transpose())).solve(from).transpose();
     MatrixXd noise = MatrixXd::Zero(building_.measured, building_.measured);
     for (std::size_t a = 0; a < noise_density.size(); ++a) {
-      const Eigen::VectorXd from = building_.from_axes.col(static_cast<Index>(a));
-      noise += noise_density[a] * noise_density[a] * from * from.transpose();
+      const Eigen::VectorXd of_axis = from.col(static_cast<Index>(a));
+      noise += noise_density[a] * noise_density[a] * of_axis * of_axis.transpose();
     }
     const std::vector<Frequency> all = frequencies(shaking);
     std::vector<AtFrequency> at_all;
