@@ -118,7 +118,7 @@ class Building {
     return [this.w / 2 + this.zoom * u, this.h / 2 - this.zoom * (ct * z + st * v), -v * ct + z * st];
   }
   draw() {
-    const c = this.canvas, r = devicePixelRatio || 1, w = printWidth || c.clientWidth, h = printWidth ? 300 : c.clientHeight;
+    const c = this.canvas, r = devicePixelRatio || 1, w = printWidth || c.clientWidth, h = printWidth ? 260 : c.clientHeight;
     if (c.width !== Math.round(w * r) || c.height !== Math.round(h * r)) { c.width = Math.round(w * r); c.height = Math.round(h * r); }
     const g = c.getContext('2d'), style = theme();
     g.setTransform(r, 0, 0, r, 0, 0);
