@@ -55,7 +55,10 @@ class Boxes {
     const c = this.canvas, r = devicePixelRatio || 1, compared = this.index.filter(reference).length;
     const percent = boxMode === 'percent' && compared > 0;
     this.left = percent ? 52 : 8;
-    const room = printWidth || c.parentElement.clientWidth, n = this.index.length, least = percent ? (room < 500 ? 38 : 50) : 84;
+    const room = printWidth || c.parentElement.clientWidth, n = this.index.length, g = this.g = c.getContext('2d');
+    g.font = '12px system-ui';
+    this.widest = this.widest || 8 + Math.max(...this.index.map(i => g.measureText(this.plan.parameters[i].name).width));
+    const least = percent ? Math.max(room < 500 ? 38 : 50, this.widest / 2) : Math.max(84, this.widest);
     const fit = Math.max(1, Math.floor((room - this.left - 4) / least));
     const rows = printWidth ? Math.ceil(n / fit) : Math.min(kMostRows, Math.ceil(n / fit));
     this.perRow = Math.ceil(n / rows);
@@ -63,7 +66,7 @@ class Boxes {
     if (!room) return;
     c.style.width = w + 'px'; c.style.height = h + 'px';
     if (c.width !== Math.round(w * r) || c.height !== Math.round(h * r)) { c.width = Math.round(w * r); c.height = Math.round(h * r); }
-    const g = this.g = c.getContext('2d'), style = theme();
+    const style = theme();
     g.setTransform(r, 0, 0, r, 0, 0);
     g.clearRect(0, 0, w, h);
     g.font = '12px system-ui'; g.fillStyle = style.ink; g.textAlign = 'left';
@@ -71,7 +74,7 @@ class Boxes {
     const named = `${this.title}, ${percent ? of : 'each on its own scale'}`;
     g.fillText(g.measureText(named).width <= room - 8 ? named : this.title + (percent ? judged ? ', % from baseline' : ', % from design' : ''), 4, 12);
     this.step = (w - this.left - 4) / this.perRow;
-    const narrow = this.step < 66; // then every second name is a row lower
+    const narrow = this.step < this.widest; // then every second name is a row lower
     const shapes = this.index.map(i => this.shape(i, percent));
     if (!shapes.some(s => s)) { g.fillStyle = style.soft; g.fillText('no values yet', this.left, kBoxes_px / 2); }
     let [low, high] = this.range(shapes, 5);
@@ -86,7 +89,8 @@ class Boxes {
   one(style, i, k, s, percent, [low, high], top, bottom, end, narrow) {
     const g = this.g, x = this.left + (k + 0.5) * this.step, from = x - this.step / 2;
     g.textAlign = 'center'; g.fillStyle = style.ink;
-    g.fillText(this.plan.parameters[i].name, x, end - (narrow && k % 2 === 0 ? 33 : 19));
+    const name = this.plan.parameters[i].name, half = g.measureText(name).width / 2 + 2;
+    g.fillText(name, Math.max(half, Math.min(x, this.canvas.width / (devicePixelRatio || 1) - half)), end - (narrow && k % 2 === 0 ? 33 : 19));
     if (i === chosen) { g.fillStyle = style.rule; g.globalAlpha = 0.4; g.fillRect(from, top - 6, this.step, bottom - top + 12); g.globalAlpha = 1; }
     if (!s) return this.note(style, estimate ? whyNot(i) : '', x, end);
     if (percent && s.reference === null) return this.note(style, 'no baseline', x, end);

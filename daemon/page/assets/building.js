@@ -218,8 +218,8 @@ class Building {
       const p = this.project(v), l = Math.hypot(p[0] - o[0], p[1] - o[1]) || 1;
       const ex = (p[0] - o[0]) / l * length, ey = (p[1] - o[1]) / l * length;
       g.strokeStyle = style.soft; g.lineWidth = 1.3;
-      g.beginPath(); g.moveTo(this.w - 50, this.h - 36); g.lineTo(this.w - 50 + ex, this.h - 36 + ey); g.stroke();
-      g.fillText(name, this.w - 53 + ex * 1.35, this.h - 32 + ey * 1.35);
+      g.beginPath(); g.moveTo(44, 44); g.lineTo(44 + ex, 44 + ey); g.stroke();
+      g.fillText(name, 41 + ex * 1.35, 48 + ey * 1.35);
     }
   }
   path(g, points) {
