@@ -27,24 +27,28 @@ void add_records(CLI::App* command, InitAnswers& answers) {
 }
 
 constexpr const char* kInitFooter =
-    "On a terminal it asks for what the options leave open. Unambiguous column titles such "
-    "as\nbase_x, F2-X or \"floor 2 frame y1\" give the place of a channel. PLACE is 0:x (base, "
-    "along x),\n2:y1 (floor 2, frame y1), or 2:x if only one frame moves along x. Frames that "
-    "move along x\nare called y1, y2, ... in order of y; those that move along y are x1, x2, ... "
-    "in order of x.\nFiles of strong-motion networks have the places in their headers. PLACE is "
-    "then 2, roof, base\nor unused, or 2:x if the header has no direction.\nExit status: 0 "
-    "written, 2 not written; everything missing is listed.\nA few accelerometers will do on "
-    "rigid "
-    "floors, or on some floors: --sensors names the floors,\n--per-level the channels of each, "
-    "or "
-    "PLACE is 1@(0,2.5):x, floor and meters in plan (1@(0,2.5):xyz\nfor a sensor with three "
-    "axes).\nExamples:\n  framewatch init\n  framewatch init --live none --stories 12 --sensors "
-    "0,4,8,12 --per-level xxy --span-x 30 \\\n    --span-y 18 --heights 3.6 --mass 600kg/m2 "
-    "--out twelve.toml\n  "
-    "framewatch init --record shaken.csv --unit g\n  framewatch init --record shaken.csv "
-    "--stories 3 --bays 0x0 --heights 4.2,3.5,3.5 \\\n    --mass 18000 --channel acc0=0:x\n  "
-    "framewatch init --live lcm --stories 5 --bays 1x1 --span-x 10.7 --span-y 15 \\\n    "
-    "--heights 3.5 --mass 400kg/m2 --start 0.5Hz --out tower.toml";
+    "On a terminal it asks for what the options leave open. Unambiguous column titles such as\n"
+    "base_x, F2-X or \"floor 2 frame y1\" give the place of a channel. PLACE is 0:x (base, along "
+    "x),\n"
+    "2:y1 (floor 2, frame y1), or 2:x if only one frame moves along x. Frames that move along x\n"
+    "are called y1, y2, ... in order of y; those that move along y are x1, x2, ... in order of x.\n"
+    "Files of strong-motion networks have the places in their headers. PLACE is then 2, roof, "
+    "base\n"
+    "or unused, or 2:x if the header has no direction.\n"
+    "Few accelerometers are enough on rigid floors, and not every floor needs one: --sensors "
+    "names\n"
+    "the floors, --per-level the channels of each. Or PLACE is 1@(0,2.5):x, a floor and meters in\n"
+    "plan; 1@(0,2.5):xyz for a sensor with three axes.\n"
+    "Exit status: 0 written, 2 not written; everything missing is listed.\n"
+    "Examples:\n"
+    "  framewatch init\n"
+    "  framewatch init --live none --stories 12 --sensors 0,4,8,12 --per-level xxy --span-x 30 \\\n"
+    "    --span-y 18 --heights 3.6 --mass 600kg/m2 --out twelve.toml\n"
+    "  framewatch init --record shaken.csv --unit g\n"
+    "  framewatch init --record shaken.csv --stories 3 --bays 0x0 --heights 4.2,3.5,3.5 \\\n"
+    "    --mass 18000 --channel acc0=0:x\n"
+    "  framewatch init --live lcm --stories 5 --bays 1x1 --span-x 10.7 --span-y 15 \\\n"
+    "    --heights 3.5 --mass 400kg/m2 --start 0.5Hz --out tower.toml";
 
 }  // namespace
 
@@ -121,9 +125,8 @@ void add_export(CommandList& commands) {
       "export", "write a model for OpenSees, or as mass, damping and stiffness matrices",
       "The model is the design of CONFIG and its effects, such as model.toml of `framewatch "
       "diagnose`.\nAn effect that OpenSees or a matrix cannot hold is refused by name.\nExit "
-      "status: "
-      "0 written, 2 nothing written.\nExample: framewatch export diagnosis/model.toml --opensees "
-      "opensees --matrices matrices");
+      "status: 0 written, 2 nothing written.\nExample: framewatch export diagnosis/model.toml "
+      "--opensees opensees");
   add_config(commands, command, arguments.config);
   add_folder(command, "--opensees", arguments.opensees,
              "folder for model.tcl and model.py, scripts of OpenSees");

@@ -27,6 +27,7 @@ using estimator::Structure;
 /// Degrees of freedom of a node: 1 to 3 displacements along x, y, z, 4 to 6 rotations about them.
 constexpr int kDofs = 6;
 constexpr int kOtherNodes = 900'000'000;  ///< tags above it are not of a floor
+constexpr int kHingeNodes = 100'000;      ///< above kOtherNodes: below the frames' hinges
 
 /// Kinds whose stiffness or mass changes the modes of the model at rest.
 bool changes_modes(const Effect& e) {
@@ -208,34 +209,40 @@ class OpenSeesWriter {
       }
   }
 
-  /// Adds the springs of the base that rocks, and of the frames' hinges on it.
+  /// Adds a node at the base that turns only, and only if `free`.
+  void add_turning_node(int tag, double x, double y, Direction along, bool free,
+                        const std::string& what) {
+    add("node", {text(tag), opensees_number(x), opensees_number(y), "0.0"}, what);
+    Words words{text(tag)};
+    for (int d = 1; d <= kDofs; ++d) words.push_back(text(!(free && d == lean_dof(along))));
+    add("fix", words);
+  }
+
+  /// Adds the springs of the base that rocks, and of the frames' hinges on it. Links of no length
+  /// join nodes at the same place.
   void add_base_rotation(Direction along) {
     if (!leans(along)) return;
     const std::string dof = text(lean_dof(along));
-    const int anchor = kOtherNodes + dof_of(along), rocker = anchor + 2;
-    const auto add_node = [&](int tag, bool free, const char* what) {
-      add("node", {text(tag), "0.0", "0.0", "0.0"}, what);
-      Words words{text(tag)};
-      for (int d = 1; d <= kDofs; ++d) words.push_back(text(!(free && d == lean_dof(along))));
-      add("fix", words);
-    };
-    add_node(anchor, false, "ground below the rotations of the base");
+    const int ground = kOtherNodes + dof_of(along), rocker = ground + 2;
     const double rocking = rocking_[index(along)];
     const auto& hinges = hinges_[index(along)];
     if (rocking > 0) {
-      add_node(rocker, true, "rotation of the base");
-      add_link("zeroLength", anchor, rocker, {add_material(elastic_material(rocking, 0))}, {dof});
+      add_turning_node(ground, 0, 0, along, false, "ground");
+      add_turning_node(rocker, 0, 0, along, true, "rotation of the base");
+      add_link("zeroLength", ground, rocker, {add_material(elastic_material(rocking, 0))}, {dof});
     }
-    const int below = rocking > 0 ? rocker : anchor;
     for (int f = 0; f < s_.frames(); ++f) {
       if (s_.direction(f) != along) continue;
-      if (!hinges.empty()) {
-        add_link("zeroLength", below, lead(0, f),
-                 {add_material(elastic_material(hinges.front(), 0))}, {dof});
-        continue;
-      }
-      for (int story = 0; story < s_.stories; ++story)
-        add("equalDOF", {text(below), text(lead(story, f)), dof});
+      for (int story = 0; story < s_.stories && hinges.empty(); ++story)
+        add("equalDOF", {text(rocker), text(lead(story, f)), dof});
+      if (hinges.empty()) continue;
+      const int below = kOtherNodes + kHingeNodes + f;
+      const bool x = along == Direction::x;
+      add_turning_node(below, x ? x_m(0) : x_m(f - s_.n()), x ? y_m(f) : y_m(0), along, rocking > 0,
+                       "below the hinge of frame " + s_.frame_name(f));
+      if (rocking > 0) add("equalDOF", {text(rocker), text(below), dof});
+      add_link("zeroLength", below, lead(0, f), {add_material(elastic_material(hinges.front(), 0))},
+               {dof});
     }
   }
 

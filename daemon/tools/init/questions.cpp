@@ -2,6 +2,7 @@
 #include "daemon/tools/init/questions.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <tuple>
 
@@ -158,14 +159,14 @@ std::string take_per_level(const std::string& text, Draft& d, ColumnCache&) {
   return "";
 }
 
-/// Returns the bays that the channels of a level need if no more are known: one where a direction
-/// has several channels.
+/// Returns the bays that the channels of a level need: a frame for each of several along a
+/// direction, and two frames of the other direction then.
 std::string bays_of_level(const std::string& per_level) {
-  const auto several = [&](char along) {
-    return std::count(per_level.begin(), per_level.end(), along) > 1;
-  };
-  if (!several('x') && !several('y')) return "0x0";
-  return "1x1";
+  const auto x = std::count(per_level.begin(), per_level.end(), 'x');
+  const auto y = std::count(per_level.begin(), per_level.end(), 'y');
+  if (x < 2 && y < 2) return "0x0";
+  return fmt::format("{}x{}", std::max(y - 1, std::ptrdiff_t{1}),
+                     std::max(x - 1, std::ptrdiff_t{1}));
 }
 
 std::string ask_bays(const Draft& d) {

@@ -245,6 +245,8 @@ class OpenSeesInterpreter {
       if (options.contains("-shearDist")) from_i = number(options["-shearDist"].at(0));
     } else if (type != "zeroLength") {
       throw std::runtime_error("unknown element " + type);
+    } else if (span.norm() > 1e-6) {
+      throw std::runtime_error("zeroLength of some length");
     }
     for (std::size_t d = 0; d < options.at("-dir").size(); ++d) {
       const int dir = std::stoi(options["-dir"][d]) - 1;

@@ -163,7 +163,7 @@ TEST_F(InitCommand, RefusesImpossibleLayouts) {
         std::pair("--sensors 2,roof,4", "the same floor twice"),
         std::pair("--sensors base", "one floor above the base at least"),
         std::pair("--per-level z", "a letter for each channel on a floor"),
-        std::pair("--per-level xxxyy", "3 channels along x, but 2 frames move along it"),
+        std::pair("--bays 1x1 --per-level xxxyy", "3 channels along x, but 2 frames move along it"),
         std::pair("--directions both --per-level xx", "no channel along y"),
         std::pair("--bays 1x1 --channel 'A=5@(0,0):x'", "write NAME=FLOOR@(X,Y):x"),
         std::pair("--bays 1x1 --channel 'A=1@(0):x'", "write NAME=FLOOR@(X,Y):x"),
