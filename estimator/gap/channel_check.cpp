@@ -10,7 +10,6 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kWindow_s = 5;
 /// Windows of readings that are kept: the base's cause the motion of the last one.
 constexpr int kKept = 4;
 constexpr int kLearned = 3;    ///< windows without overlap before an axis is judged: 15 s
@@ -99,7 +98,7 @@ const std::vector<ChannelNews>& ChannelCheck::push(Time time, const ChannelInsta
     noise_[a] =
         std::isfinite(noise_variance[a]) ? static_cast<double>(rows) * noise_variance[a] : 0;
     correct(a);
-    seen_[a] = look_at(a, noise_[a]);
+    seen_[a] = look_at(a, noise_[a], instant.start_share);
   }
   const bool quiet =
       std::none_of(seen_.begin(), seen_.end(), [](const Seen& seen) { return seen.departs; });
@@ -141,7 +140,7 @@ void ChannelCheck::correct(std::size_t axis) {
   }
 }
 
-ChannelCheck::Seen ChannelCheck::look_at(std::size_t axis, double noise) const {
+ChannelCheck::Seen ChannelCheck::look_at(std::size_t axis, double noise, double start_share) const {
   Seen seen;
   const auto a = static_cast<Eigen::Index>(axis);
   const auto read = window_read_.col(a);
@@ -152,7 +151,7 @@ ChannelCheck::Seen ChannelCheck::look_at(std::size_t axis, double noise) const {
   seen.left = (read - expected).squaredNorm();
   seen.judged = usual.windows >= kLearned && seen.motion > kAbove * noise;
   if (!seen.judged) return seen;
-  seen.usual = usual.share * seen.motion + noise;
+  seen.usual = (usual.share + start_share) * seen.motion + noise;
   seen.departure = std::log(seen.left / seen.usual) - usual.mean;
   const double deviation = std::sqrt(usual.spread);
   seen.departs = seen.departure > std::max(kDeparts, kDeviations * deviation) &&

@@ -32,6 +32,8 @@ struct ChannelInstant {
   const std::vector<double>& read;      ///< by axis
   const std::vector<double>& expected;  ///< by axis; NaN for the base
   BaseResponse* base;                   ///< of the same model; null if it is not linear
+  /// Share of the motion's energy that the unknown motion at the start may still be, kWindow_s ago.
+  double start_share;
 };
 
 /// Tells a channel that misreads from a building that changed. The running model knows how every
@@ -41,6 +43,8 @@ struct ChannelInstant {
 /// docs/equations.md, faults of channels.
 class ChannelCheck {
  public:
+  static constexpr int kWindow_s = 5;
+
   ChannelCheck(const Structure& structure, const std::vector<SensorAxis>& axes, double rate_hz);
 
   /// Forgets the window, after an interruption.
@@ -123,7 +127,7 @@ class ChannelCheck {
 
   Eigen::MatrixXd newest(const Eigen::MatrixXd& ring, Eigen::Index rows) const;
   void correct(std::size_t axis);
-  Seen look_at(std::size_t axis, double noise_variance) const;
+  Seen look_at(std::size_t axis, double noise, double start_share) const;
   Eigen::Index rows_since_onset(const std::vector<int>& axes) const;
   void follow_departure(bool departs, const std::vector<int>& floors);
   void learn(bool quiet);

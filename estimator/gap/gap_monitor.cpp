@@ -237,8 +237,10 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   const bool settled = c.settled_s >= c.running.settle_s();
   compare(c, settled);
   if (settled ? c.meter.ends_second() : check_.ends_second()) noise_variances(c, noise_density);
-  channel_news_ = check_.push(set.time - c.delay, {read_, expected_, c.base ? &*c.base : nullptr},
-                              noise_variance_);
+  const double start = c.running.remains(c.settled_s - ChannelCheck::kWindow_s);
+  channel_news_ =
+      check_.push(set.time - c.delay,
+                  {read_, expected_, c.base ? &*c.base : nullptr, start * start}, noise_variance_);
   if (!settled) return nullptr;
   if (!channel_news_.empty()) c.meter.restart();
   if (!c.meter.close(set.time - c.delay, noise_variance_)) return nullptr;

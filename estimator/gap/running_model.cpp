@@ -146,6 +146,10 @@ void RunningModel::restart() {
   filter_.reset();
 }
 
+double RunningModel::remains(double time_s) const {
+  return std::pow(kLeft, std::max(time_s, 0.0) / settle_s_);
+}
+
 void RunningModel::push(const Eigen::VectorXd& inputs) {
   bias_ += bias_share_ * (inputs - bias_);
   newest_ = newest_ == 0 ? kTaps - 1 : newest_ - 1;

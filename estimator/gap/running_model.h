@@ -36,6 +36,9 @@ class RunningModel {
   /// Returns the time after which the initial state is forgotten, s.
   double settle_s() const { return settle_s_; }
 
+  /// Returns the share of the initial state's motion that remains after a time.
+  double remains(double time_s) const;
+
   static constexpr int kDelay = 16;  ///< instants
 
   void archive(auto& a) {
