@@ -22,7 +22,7 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr Index kFewestSignals = 2, kMostSignals = 8;  ///< principal components of the outputs
-constexpr Index kInstantsPerSignal = 64;
+constexpr Index kInstantsPerSignal = 40;
 constexpr Index kMostInputs = 4;      ///< principal components of the inputs
 constexpr double kLeastInput = 1e-3;  ///< of the largest component's variance
 constexpr Index kMostBlocks = 24, kFewestBlocks = 8;
@@ -35,6 +35,7 @@ constexpr double kRidge = 1e-10;
 constexpr double kStableHz = 0.01, kStableDamping = 0.1, kStableRatio = 2e-3, kStableMac = 0.98;
 constexpr double kMostDamping = 0.3;
 constexpr int kFewestOrders = 5;
+constexpr double kMostSpread = 2e-3;              ///< of the frequency over the orders, relative
 constexpr double kSameHz = 0.03, kSameMac = 0.9;  ///< of poles of one mode
 
 /// Returns the columns' principal components as a matrix columns x components, the strongest first.
@@ -121,9 +122,9 @@ class Band {
     return states_.size() == 0 ? 0 : std::min(kOrdersPerSignal, blocks_ / 2) * signals_;
   }
 
-  /// Returns the lowest frequency of which the past rows hold half a period.
+  /// Returns the lowest frequency of which the past rows hold a quarter of a period.
   double lowest_hz() const {
-    return 0.5 / (static_cast<double>(std::max<Index>(blocks_, 1)) * step_s_);
+    return 0.25 / (static_cast<double>(std::max<Index>(blocks_, 1)) * step_s_);
   }
 
   std::vector<FittedPole> poles(Index order) const {
@@ -222,12 +223,13 @@ std::vector<Cluster> stable_poles(const Band& band, double low_hz, double high_h
   return out;
 }
 
-/// Adds a mode. Of one that several bands have found, the value that the orders of a band agree on
-/// best stays.
+/// Adds a mode, unless its orders agree too little. Of one that several bands have found, the value
+/// that the orders of a band agree on best stays.
 void keep(MeasuredMode mode, std::vector<MeasuredMode>& modes) {
   const auto disagreement = [](const MeasuredMode& of) {
     return of.frequency_spread_hz / of.frequency_hz;
   };
+  if (disagreement(mode) > kMostSpread) return;
   for (const MeasuredMode& other : modes)
     if (same_mode(other, mode) && disagreement(other) <= disagreement(mode)) return;
   std::erase_if(modes, [&](const MeasuredMode& other) { return same_mode(other, mode); });
