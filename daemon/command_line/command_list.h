@@ -98,6 +98,7 @@ void add_replay(CommandList& commands);
 void add_diff(CommandList& commands);
 void add_repair(CommandList& commands);
 void add_refine(CommandList& commands);
+void add_modes(CommandList& commands);
 
 // command_line.cpp: commands of framewatch-fleet, listed here.
 void add_fleet(CommandList& commands);

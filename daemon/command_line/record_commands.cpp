@@ -8,6 +8,7 @@
 #include "daemon/tools/replay/refine_command.h"
 #include "daemon/tools/replay/repair_command.h"
 #include "daemon/tools/replay/replay_command.h"
+#include "daemon/tools/report/modes_command.h"
 #include "daemon/tools/report/report_command.h"
 #include "daemon/tools/session/record_command.h"
 #include "daemon/tools/simulation/simulate_command.h"
@@ -161,6 +162,33 @@ void add_refine(CommandList& commands) {
   commands.set_action(command, [&arguments] { return refine(arguments); });
 }
 
+void add_modes(CommandList& commands) {
+  ModesArguments& arguments = commands.arguments<ModesArguments>();
+  CLI::App* command = commands.add(
+      "modes",
+      "print natural frequencies, damping ratios and shapes: of the model identified from a "
+      "record,\nof the record alone, and of the design",
+      "Exit status: 0 done, 1 neither model nor record gives a mode, 2 bad usage or "
+      "input.\nExamples:\n  framewatch modes building.toml record.csv\n  framewatch modes "
+      "building.toml record.lcmlog --from 12 --to 40 --csv modes.csv --mat modes.mat");
+  add_config(commands, command, arguments.config);
+  commands.reads_files(command
+                           ->add_option("LOG", arguments.inputs,
+                                        "LCM event logs and record files (CSV), in order of time")
+                           ->required());
+  add_record_options(command, arguments.record);
+  command->add_option("--from", arguments.from_s, "seconds after the first sample")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--to", arguments.to_s, "seconds after the first sample (default: the end)")
+      ->check(CLI::PositiveNumber);
+  add_file(command, "--csv", arguments.csv, "also write one row per mode, with the shapes, as CSV");
+  add_file(command, "--mat", arguments.mat, "also write the modes for MATLAB (MAT 5)");
+  add_json(command, arguments.json);
+  add_max_size(command);
+  commands.set_action(command, [&arguments] { return modes(arguments); });
+}
+
 void add_simulate(CommandList& commands) {
   SimulateArguments& arguments = commands.arguments<SimulateArguments>();
   CLI::App* command = commands.add(
@@ -259,7 +287,8 @@ void add_report(CommandList& commands) {
       "report",
       "write a self-contained page about a session: boxplots, parameters, histories, loops",
       "With --config and --raw, it also shows stages (forced and free vibration side by "
-      "side),\nreference-dynamic values, transfer functions, drifts and forces.\nExamples:\n  "
+      "side),\nreference-dynamic values, transfer functions, modes, drifts and "
+      "forces.\nExamples:\n  "
       "framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html\n  "
       "framewatch report est.lcmlog --figures figures --format pdf,png");
   commands.reads_files(

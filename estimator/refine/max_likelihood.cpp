@@ -152,9 +152,10 @@ class Refiner {
     score.diagonal() += prior_ * level;
     const MatrixXd inverse =
         Ldlt(curvature).solve(MatrixXd(MatrixXd::Identity(table_.size(), table_.size())));
-    const VectorXd variance = (inverse * score * inverse).diagonal();
     out.theta = x.cwiseProduct(design_);
-    out.std_error = (level * variance).cwiseMax(0).cwiseSqrt().cwiseProduct(design_);
+    out.covariance =
+        design_.asDiagonal() * (level * inverse * score * inverse) * design_.asDiagonal();
+    out.std_error = out.covariance.diagonal().cwiseMax(0).cwiseSqrt();
     out.bound = std::sqrt(level) * bound_of(signal).cwiseProduct(design_);
     out.misfit_ratio = level_;
     out.log_likelihood = -point.misfit;

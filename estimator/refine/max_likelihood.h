@@ -65,8 +65,9 @@ enum class RefineStatus {
 struct Refinement {
   RefineStatus status = RefineStatus::bad_input;
   Eigen::VectorXd theta;
-  Eigen::VectorXd std_error;  ///< includes prior, regressor noise and misfit
-  Eigen::VectorXd bound;      ///< Cramer-Rao bound at theta without prior; infinite: no information
+  Eigen::VectorXd std_error;   ///< includes prior, regressor noise and misfit
+  Eigen::MatrixXd covariance;  ///< of theta; its diagonal is the square of std_error
+  Eigen::VectorXd bound;  ///< Cramer-Rao bound at theta without prior; infinite: no information
   int iterations = 0;
   double log_likelihood = 0;
   double misfit_ratio = 0;  ///< misfit over its expectation under sensor noise; 1: fits

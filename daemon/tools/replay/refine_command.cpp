@@ -15,12 +15,11 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/segment_collector.h"
+#include "daemon/tools/replay/refined_segment.h"
 #include "daemon/tools/replay/replay_survey.h"
 #include "daemon/tools/replay/stored_samples.h"
 #include "drivers/lcm/accel_intake.h"
-#include "estimator/identify/elements/story_design.h"
 #include "estimator/refine/max_likelihood.h"
-#include "estimator/structure/group_design.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -34,42 +33,6 @@ struct Report {
   std::vector<double> streaming;    ///< theta order; NaN: not published
   std::vector<std::string> silent;  ///< channels without samples, which were left out
 };
-
-/// The stretch that is refined, without the channels that have no sample in it.
-struct RefinedSegment {
-  estimator::PipelineConfig config;
-  Eigen::MatrixXd accel;
-  std::vector<std::string> silent;
-};
-
-RefinedSegment without_silent_channels(const estimator::PipelineConfig& config,
-                                       const SegmentCollector& collector) {
-  RefinedSegment out{config, {}, {}};
-  const Eigen::MatrixXd accel = collector.accel();
-  std::vector<Eigen::Index> kept;
-  out.config.axes.clear();
-  for (Eigen::Index a = 0; a < accel.cols(); ++a) {
-    const estimator::SensorAxis& axis = collector.axes()[static_cast<std::size_t>(a)];
-    if (accel.col(a).array().isNaN().all() && !axis.is_force) {
-      out.silent.push_back(axis.name);
-      continue;
-    }
-    kept.push_back(a);
-    out.config.axes.push_back(axis);
-  }
-  if (!out.silent.empty() && !find_problems(config.structure, out.config.axes).empty())
-    return {config, accel, {}};
-  for (estimator::SensorAxis& axis : out.config.axes) axis.cross = -1;  // corrected already
-  out.accel = accel(Eigen::all, kept);
-  return out;
-}
-
-/// Returns the design of the identified parameters, SI.
-Eigen::VectorXd design_of(const estimator::PipelineConfig& c) {
-  const estimator::ParameterTable table = c.parameters();
-  const estimator::GroupDesign design = estimator::story_design(c);
-  return table.grouped() ? group_parameters(c.structure, table, design) : design.theta;
-}
 
 std::string json(const RefineArguments& a, const Config& config,
                  const estimator::ParameterTable& table, const Report& report) {
@@ -178,9 +141,10 @@ int refine(const RefineArguments& a) {
   estimator::each_main_window(pipeline.finish(), take);
   collector.finish();
 
-  const RefinedSegment segment = without_silent_channels(pipeline_config, collector);
+  const RefinedSegment segment =
+      without_silent_channels(pipeline_config, collector.axes(), collector.accel());
   const estimator::ParameterTable table = segment.config.parameters();
-  const Eigen::VectorXd design = design_of(segment.config);
+  const Eigen::VectorXd design = identified_design(segment.config);
   Report report{a.from_s, to_s, {}, {}, segment.silent};
   Eigen::VectorXd start = design;
   for (int p = 0; p < table.size(); ++p) {

@@ -138,11 +138,27 @@ Eigen::VectorXd as_vector(const std::vector<double>& values) {
 void add_dynamic_references(SessionReport& r) {
   const estimator::ParameterTable table = r.config->pipeline.parameters();
   for (int p = 0; p < table.size(); ++p) {
-    if (table[p].kind != estimator::ParameterKind::frame_stiffness) continue;
-    for (const TransferFunction& t : r.transfer)
-      if (t.direction == table[p].direction)
-        r.reference_dynamic[static_cast<std::size_t>(p)] =
-            r.reference_static[static_cast<std::size_t>(p)] * t.stiffness_ratio();
+    const auto at = static_cast<std::size_t>(p);
+    std::string& reason = r.no_reference_dynamic[at];
+    if (table[p].kind != estimator::ParameterKind::frame_stiffness) {
+      reason = "only frame stiffness has a reference-dynamic value";
+      continue;
+    }
+    reason = r.config->pipeline.design.size() == 0 ? "the configuration has no [design]"
+             : r.config->pipeline.bending_nmprad.any()
+                 ? "the model of transfer functions does not bend"
+                 : fmt::format(
+                       "no transfer function along {}: it needs 8 s of forced vibration "
+                       "without missing samples, and channels at base and top",
+                       letter(table[p].direction));
+    for (const TransferFunction& t : r.transfer) {
+      if (t.direction != table[p].direction) continue;
+      r.reference_dynamic[at] = r.reference_static[at] * t.stiffness_ratio();
+      if (std::isfinite(r.reference_dynamic[at]))
+        reason.clear();
+      else if (!t.no_pair.empty())
+        reason = t.no_pair;
+    }
   }
 }
 
@@ -170,6 +186,33 @@ std::string of_range(const ChannelResult& r) {
   return r.range > 0 ? fmt::format("{:.0f}", 100 * r.peak / r.range) : "";
 }
 
+/// Numbers the reasons why cells of a table are empty.
+class Reasons {
+ public:
+  /// Returns the text of a number, or a dash with the number of the reason.
+  std::string cell(double value, const char* format, const std::string& reason) {
+    if (std::isfinite(value)) return fmt::format(fmt::runtime(format), value);
+    return mark("-", reason);
+  }
+  /// Returns the text with the number of the reason.
+  std::string mark(const std::string& text, const std::string& reason) {
+    const auto at = std::find(reasons_.begin(), reasons_.end(), reason);
+    const auto number = at - reasons_.begin() + 1;
+    if (at == reasons_.end()) reasons_.push_back(reason);
+    return fmt::format("{}<sup>{}</sup>", text, number);
+  }
+  /// Returns the list of the reasons.
+  std::string list() const {
+    std::string out;
+    for (std::size_t i = 0; i < reasons_.size(); ++i)
+      out += fmt::format("{}<sup>{}</sup> {}", i == 0 ? "" : "; ", i + 1, html_text(reasons_[i]));
+    return out.empty() ? out : "<p>" + out + ".</p>\n";
+  }
+
+ private:
+  std::vector<std::string> reasons_;
+};
+
 std::string parameter_section(const SessionReport& r) {
   std::string out =
       "<h2>Table of parameters</h2>\n<p>Over every window that lies wholly in the stage. The "
@@ -179,21 +222,33 @@ std::string parameter_section(const SessionReport& r) {
       "window.</p>\n";
   for (const ReportStage& stage : r.compared) {
     std::vector<std::vector<std::string>> rows;
+    Reasons reasons;
     const ModelFitTold* fit = model_fit_at_end(r.estimates, stage.whole);
     for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
       const auto [factor, unit] = r.units.of(r.estimates.table.kind[p]);
       const ParameterSummary one = summarise(r.estimates, p, stage.whole);
       std::vector<std::string> row{html_text(place_of(r, p)), html_text(r.estimates.table.name[p]),
                                    unit};
-      for (const double value : {r.reference_static[p], r.reference_dynamic[p], one.mean})
-        row.push_back(or_dash(factor * value, "{:#.4g}"));
-      row.push_back(or_dash(factor * one.std_error, "{:#.2g}"));
-      row.push_back(model_error(fit, p, factor * one.mean));
+      const std::string no_static = "the estimates have no start value and no design of it";
+      const std::string empty_word = without(r, p, stage.whole);
+      const std::string no_value = empty_word.empty() ? "no window lies wholly in the stage"
+                                                      : "no window shows it: " + empty_word;
+      row.push_back(reasons.cell(factor * r.reference_static[p], "{:#.4g}", no_static));
+      row.push_back(reasons.cell(factor * r.reference_dynamic[p], "{:#.4g}",
+                                 "reference-dynamic: " + r.no_reference_dynamic[p]));
+      row.push_back(reasons.cell(factor * one.mean, "{:#.4g}", no_value));
+      row.push_back(reasons.cell(factor * one.std_error, "{:#.2g}", no_value));
+      const std::string model = model_error(fit, p, factor * one.mean);
+      row.push_back(model == "-" ? reasons.mark(model,
+                                                "the model is not judged: it takes a window "
+                                                "that shows the parameter")
+                                 : model);
       for (const double value : {one.boxplot.q1, one.boxplot.median, one.boxplot.q3})
-        row.push_back(or_dash(factor * value, "{:#.4g}"));
-      row.push_back(or_dash(100 * one.observable_ratio, "{:.1f}"));
-      row.push_back(or_dash(100 * (one.boxplot.median / r.reference_static[p] - 1), "{:+.1f}"));
-      row.push_back(without(r, p, stage.whole));
+        row.push_back(reasons.cell(factor * value, "{:#.4g}", no_value));
+      row.push_back(reasons.cell(100 * one.observable_ratio, "{:.1f}", no_value));
+      row.push_back(reasons.cell(100 * (one.boxplot.median / r.reference_static[p] - 1), "{:+.1f}",
+                                 std::isfinite(r.reference_static[p]) ? no_value : no_static));
+      row.push_back(empty_word);
       rows.push_back(std::move(row));
     }
     out +=
@@ -202,7 +257,8 @@ std::string parameter_section(const SessionReport& r) {
                     r.reference_from_drawings ? "reference-static" : "start value",
                     "reference-dynamic", "mean", "standard error", "model's error", "q1", "median",
                     "q3", "windows with value, %", "median to reference, %", "without, mostly"},
-                   rows);
+                   rows) +
+        reasons.list();
   }
   return out;
 }
@@ -271,8 +327,8 @@ std::string session_report_html(const SessionReport& r) {
                               session_section(r) + figure_10_section(r) +
                               (r.drifts ? drift_table_section(*r.drifts, *r.config) : "") +
                               floors_section(r) + loops_section(r) + transfer_section(r) +
-                              histories_section(r) + parameter_section(r) + check_section(r) +
-                              health_section(r) + provenance(r));
+                              modes_section(r) + histories_section(r) + parameter_section(r) +
+                              check_section(r) + health_section(r) + provenance(r));
 }
 
 void evaluate(SessionReport& r) {
@@ -289,6 +345,8 @@ void evaluate(SessionReport& r) {
   for (double& value : r.reference_static)
     if (!(value > 0)) value = estimator::kNaN;
   r.reference_dynamic.assign(count, estimator::kNaN);
+  r.no_reference_dynamic.assign(
+      count, "it needs the raw samples: framewatch report EST --config CONFIG --raw RAW");
   r.changes = session_changes(r.estimates);
   r.recoveries = take_recoveries(r.estimates, r.motion ? &*r.motion : nullptr, r.changes);
   r.judged = judged_elements(r.estimates);
@@ -306,12 +364,13 @@ void evaluate(SessionReport& r) {
     const ReportStage& stage = r.compared[i];
     if (stage.kind != StageKind::forced) continue;
     const Eigen::Index from = m.row_at(stage.from_us), to = m.row_at(stage.to_us);
-    auto& transfer = stage.after ? r.transfer_after : r.transfer;
-    if (transfer.empty()) transfer = transfer_functions(structure, m, from, to, reference);
-    if (grouped) continue;
     std::vector<double> identified;
     for (std::size_t p = 0; p < count; ++p)
       identified.push_back(summarise(r.estimates, p, stage.whole).boxplot.median);
+    r.modes.push_back({i, record_modes(*r.config, m, identified, from, to)});
+    auto& transfer = stage.after ? r.transfer_after : r.transfer;
+    if (transfer.empty()) transfer = transfer_functions(structure, m, from, to, reference);
+    if (grouped) continue;
     r.loops.push_back({i, frame_loops(structure, m, as_vector(identified),
                                       r.config->pipeline.options.high_pass_hz, kLoop_s, from, to)});
   }

@@ -10,6 +10,7 @@
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimates/session_estimates.h"
 #include "daemon/tools/report/frame_loops.h"
+#include "daemon/tools/report/record_modes.h"
 #include "daemon/tools/report/report_units.h"
 #include "daemon/tools/report/session_changes.h"
 #include "daemon/tools/report/session_file.h"
@@ -36,6 +37,12 @@ struct StageLoops {
   FrameLoops loops;
 };
 
+/// The modes in a forced stage.
+struct StageModes {
+  std::size_t stage;  ///< of SessionReport::compared
+  RecordModes modes;
+};
+
 struct ReportFile {
   std::string use, path, sha256;
 };
@@ -56,10 +63,12 @@ struct SessionReport {
   /// Table order, SI, NaN: unknown. reference_static: the design of the configuration, or the
   /// estimator's start values. reference_dynamic: of frames, by the ratio of natural frequencies.
   std::vector<double> reference_static, reference_dynamic;
+  std::vector<std::string> no_reference_dynamic;  ///< why a value is missing; empty: it exists
   bool reference_from_drawings = false;
   std::vector<TransferFunction> transfer;        ///< of the longest forced stage before a change
   std::vector<TransferFunction> transfer_after;  ///< of the one after it; empty without a change
   std::vector<StageLoops> loops;
+  std::vector<StageModes> modes;
   std::optional<DriftReport> drifts;    ///< with motion
   std::optional<SessionFloors> floors;  ///< with motion, for a building of groups
   std::vector<ReportFile> files;
@@ -92,6 +101,7 @@ std::string figure_10_section(const SessionReport& report);
 std::string stages_section(const SessionReport& report);
 std::string histories_section(const SessionReport& report);
 std::string transfer_section(const SessionReport& report);
+std::string modes_section(const SessionReport& report);
 std::string loops_section(const SessionReport& report);
 std::string floors_section(const SessionReport& report);
 

@@ -6,6 +6,8 @@
 #include <complex>
 #include <numbers>
 
+#include <fmt/core.h>
+
 #include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/numeric/solve.h"
@@ -216,7 +218,11 @@ void pair_modes(const estimator::Structure& structure, const Spectra& s, double 
         mass[structure.dof(story, f)] = structure.frame_mass(story, f);
   const auto model =
       shape_peaks(s.floors_model, s.base, mass, step_hz, kLowest_hz, highest_hz, kFundamental);
-  if (model.empty() || s.floors.cols() == 0) return;
+  if (s.floors.cols() == 0) out.no_pair = "not every frame has a channel on every floor";
+  if (model.empty())
+    out.no_pair = fmt::format("the design has no resonance along {} between {:g} and {:.3g} Hz",
+                              letter(out.direction), kLowest_hz, highest_hz);
+  if (!out.no_pair.empty()) return;
   const ShapePeak& wanted = model.front();
   out.model_mode_hz = wanted.hz;
   for (const ShapePeak& peak :
@@ -226,6 +232,11 @@ void pair_modes(const estimator::Structure& structure, const Spectra& s, double 
     out.mac = mac;
     out.measured_mode_hz = peak.hz;
   }
+  if (!std::isfinite(out.mac))
+    out.no_pair = fmt::format(
+        "no measured peak between {:.3g} and {:.3g} Hz has the shape of the design's lowest mode "
+        "along {}",
+        wanted.hz / kNear, wanted.hz * kNear, letter(out.direction));
 }
 
 TransferFunction quotient(const Signals& s, const estimator::Structure& structure, double rate_hz,
@@ -253,7 +264,10 @@ TransferFunction quotient(const Signals& s, const estimator::Structure& structur
     out.coherence.push_back(std::norm(spectrum.cross[k]) / (spectrum.base[k] * spectrum.top[k]));
     if (has_model) out.model.push_back(std::abs(spectrum.cross_model[k]) / spectrum.base[k]);
   }
-  if (has_model) pair_modes(structure, spectrum, step_hz, highest_hz, out);
+  if (has_model)
+    pair_modes(structure, spectrum, step_hz, highest_hz, out);
+  else if (theta.size() > 0)
+    out.no_pair = fmt::format("the building has more than {} degrees of freedom", kMaxUnknowns);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,7 +24,8 @@ struct TransferFunction {
   /// The lowest peak of the model's motion along the direction, and the measured peak at 0.6 to 1.6
   /// times its frequency whose shape is most like it (MAC); NaN: no peak is alike.
   double measured_mode_hz = 0, model_mode_hz = 0;
-  double mac = 0;  ///< of the two shapes, weighted by mass: 1 is the same; NaN: no pair
+  double mac = 0;            ///< of the two shapes, weighted by mass: 1 is the same; NaN: no pair
+  std::string no_pair = {};  ///< why there is no pair; empty: there is one
 
   /// Returns (measured over model)^2, the factor from reference-static to reference-dynamic
   /// stiffnesses; NaN without a pair of modes.
