@@ -2,6 +2,7 @@
 #include "daemon/base/html_page.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -30,7 +31,10 @@ constexpr const char* kStyle =
     "figcaption{color:var(--soft);font-size:13px;max-width:60em}"
     "details summary{cursor:pointer;color:var(--soft)}"
     ".verdict{font-size:1.35em;line-height:1.35;font-weight:600;max-width:40em;margin:.2em 0 .6em}"
-    "@page{size:A4;margin:14mm 13mm}"
+    "nav ol{columns:2;max-width:40em;font-size:13px;color:var(--soft)}nav a{color:inherit}"
+    "img{max-width:100%;max-height:14cm}"
+    "@page{size:A4;margin:14mm 13mm 16mm;"
+    "@bottom-right{content:counter(page) \" of \" counter(pages);font:8pt sans-serif}}"
     "@media print{body{font-size:10pt;margin:0;padding:0;max-width:none}"
     "h1{margin:.4em 0}h2{margin-top:1.1em}h2,h3{break-after:avoid}"
     "figure{break-inside:auto;margin:.6em 0}figure>div{zoom:.68}.plot{break-inside:avoid}"
@@ -102,6 +106,23 @@ std::string html_figure(const std::vector<Picture>& pictures, const std::string&
   std::vector<std::string> plots;
   for (const Picture& picture : pictures) plots.push_back(picture.plot.svg());
   return html_figure(plots, caption);
+}
+
+std::string with_contents(const std::string& body) {
+  constexpr std::string_view kBegins = "<h2>", kEnds = "</h2>";
+  std::string list, out;
+  std::size_t from = 0;
+  int chapter = 0;
+  for (auto at = body.find(kBegins); at != std::string::npos; at = body.find(kBegins, from)) {
+    const std::size_t end = body.find(kEnds, at);
+    const std::string id = fmt::format("chapter-{}", ++chapter);
+    const std::size_t title = at + kBegins.size();
+    list += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, body.substr(title, end - title));
+    out += body.substr(from, at - from) + fmt::format("<a id=\"{}\"></a>", id);
+    out += kBegins;
+    from = title;
+  }
+  return "<nav aria-label=\"contents\"><ol>\n" + list + "</ol></nav>\n" + out + body.substr(from);
 }
 
 std::string html_page(const std::string& title, const std::string& body) {

@@ -18,6 +18,9 @@ std::string html_table(const std::vector<std::string>& head,
 std::string html_figure(const std::vector<std::string>& plots, const std::string& caption);
 std::string html_figure(const std::vector<Picture>& pictures, const std::string& caption);
 
+/// Returns `body`, whose chapters begin with <h2>, behind a table of contents with links to them.
+std::string with_contents(const std::string& body);
+
 /// Returns a self-contained page without scripts or fetched files, light or dark by the reader's
 /// system and light on paper. `title` is text, `body` is HTML.
 std::string html_page(const std::string& title, const std::string& body);

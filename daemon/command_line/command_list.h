@@ -96,6 +96,7 @@ void add_history(CommandList& commands);
 // record_commands.cpp: estimates and repair of logs.
 void add_replay(CommandList& commands);
 void add_diff(CommandList& commands);
+void add_compare(CommandList& commands);
 void add_repair(CommandList& commands);
 void add_refine(CommandList& commands);
 void add_modes(CommandList& commands);

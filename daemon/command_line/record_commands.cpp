@@ -4,6 +4,7 @@
 #include "daemon/command_line/command_list.h"
 #include "daemon/monitor/history/history_command.h"
 #include "daemon/tools/commands/convert_command.h"
+#include "daemon/tools/compare/compare_command.h"
 #include "daemon/tools/replay/diff_command.h"
 #include "daemon/tools/replay/refine_command.h"
 #include "daemon/tools/replay/repair_command.h"
@@ -28,8 +29,10 @@ void add_parts(CLI::App* command, ReplayArguments& arguments) {
            "continue from the saved state of an earlier replay or of the daemon");
 }
 
-/// Adds --figures and --format.
-void add_figures(CLI::App* command, PictureFiles& figures) {
+/// Adds --about, --figures and --format.
+void add_page_options(CLI::App* command, std::string& about, PictureFiles& figures) {
+  add_file(command, "--about", about,
+           "file for the head of the page: date, laboratory, client, author, photographs (TOML)");
   add_folder(command, "--figures", figures.folder,
              "new folder for every picture as a file, one and two columns wide, with "
              "its\npoints as CSV");
@@ -117,6 +120,47 @@ void add_diff(CommandList& commands) {
   command->add_flag("--quiet", arguments.quiet, "print nothing; only set the exit status");
   add_max_size(command);
   commands.set_action(command, [&arguments] { return diff(arguments); });
+}
+
+void add_compare(CommandList& commands) {
+  CompareArguments& arguments = commands.arguments<CompareArguments>();
+  CLI::App* command = commands.add(
+      "compare",
+      "compare runs of one building: stiffness, damping, drifts and transfer functions, with\nthe "
+      "differences in standard errors",
+      "A source is a record file or raw log (with --config), a log of estimates, a folder of\n"
+      "`framewatch record`, a configuration (its design), or PLACE@FROM..TO: the history of a\n"
+      "configuration or folder between two times (UTC, or seconds since 1970).\nExit status: 0 no "
+      "stiffness differs; 1 one differs, or none could be judged; 2 bad usage or\ninput, or unlike "
+      "buildings.\nExamples:\n  framewatch compare run1.csv run2.csv --config table.toml --out "
+      "compare.html\n"
+      "  framewatch compare monday.lcmlog friday.lcmlog --threshold 5 --quiet");
+  commands.reads_files(command
+                           ->add_option("SOURCES", arguments.sources,
+                                        "two or more sources; the first is what the others are "
+                                        "compared with")
+                           ->required()
+                           ->expected(2, 1000));
+  commands.reads_files(add_file(command, "--config", arguments.options.config,
+                                "configuration of record files and raw logs (TOML)"));
+  add_record_options(command, arguments.options.record, "--raw-format");
+  add_file(command, "--out", arguments.out, "page to write (HTML)");
+  add_page_options(command, arguments.about, arguments.figures);
+  command
+      ->add_option_function<double>(
+          "--threshold",
+          [&arguments](const double& percent) { arguments.limits.ratio = percent / 100; },
+          "least difference of a stiffness, % (default: 3 for frames, 20 for floor panels)")
+      ->check(CLI::Range(0.01, 100.0));
+  command
+      ->add_option("--errors", arguments.limits.errors,
+                   "least difference of a stiffness in standard errors")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  add_json(command, arguments.json);
+  command->add_flag("--quiet", arguments.quiet, "print nothing; only set the exit status");
+  add_max_size(command);
+  commands.set_action(command, [&arguments] { return compare(arguments); });
 }
 
 void add_repair(CommandList& commands) {
@@ -308,7 +352,7 @@ void add_report(CommandList& commands) {
   add_file(command, "--drifts", arguments.drifts,
            "JSON file for the peak drift of every story with its error, its "
            "probable\ndamage by [fragility], and the placard");
-  add_figures(command, arguments.figures);
+  add_page_options(command, arguments.about, arguments.figures);
   command->add_option("--title", arguments.title, "title of the page");
   command->add_option("--test", arguments.test, "name of the test");
   command->add_option("--operator", arguments.operator_name, "operator of the test");

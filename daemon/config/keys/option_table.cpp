@@ -96,9 +96,10 @@ void take_reloadable(std::string_view section, const void* owner, const void* fr
 std::span<const Option> options() {
   static const std::vector<Option> kAll = [] {
     std::vector<Option> all;
-    for (const auto table : {structure_options, channel_options, estimator_options, lcm_options,
-                             can_options, watch_options, history_options, event_report_options,
-                             fleet_options, scenario_options, effect_options, expectation_options})
+    for (const auto table :
+         {structure_options, channel_options, estimator_options, lcm_options, can_options,
+          watch_options, history_options, event_report_options, fleet_options, scenario_options,
+          effect_options, expectation_options, about_options})
       for (const OptionSection& some : table())
         for (const Option& row : some.rows) all.push_back(completed(row, some));
     return all;

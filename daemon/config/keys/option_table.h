@@ -76,6 +76,7 @@ std::vector<OptionSection> fleet_options();
 std::vector<OptionSection> scenario_options();
 std::vector<OptionSection> effect_options();  ///< for configuration and scenario files
 std::vector<OptionSection> expectation_options();
+std::vector<OptionSection> about_options();
 
 /// Returns the rows of all tables, in that order and complete.
 std::span<const Option> options();

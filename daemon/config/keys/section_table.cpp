@@ -162,6 +162,10 @@ const SectionDescription kSections[] = {
     {"expect.counts", "[counts]", "Expected counts."},
     {"expect.parameter", "[[parameter]]", "Expected values of a parameter or group."},
     {"expect.event", "[[event]]", "Expected events."},
+    {"about", "Report files: at the top",
+     "Input of `framewatch report --about` and `compare --about`: the head of a report for a "
+     "client."},
+    {"about.photograph", "[[photograph]]", "A photograph in the report."},
     {"baseline.parameter", "Baseline files: [[parameter]]", "Reference values of [watch]."},
 };
 

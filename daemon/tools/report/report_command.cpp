@@ -84,6 +84,12 @@ int report(const ReportArguments& a) {
     r.config = load_config(a.config, problems);
     for (const ConfigProblem& p : problems) complain(p.where + ": " + p.message);
   }
+  if (!a.about.empty()) {
+    std::vector<ConfigProblem> problems;
+    auto about = read_about(a.about, problems);
+    for (const ConfigProblem& p : problems) complain(p.where + ": " + p.message);
+    if (about) r.about = *std::move(about);
+  }
   if (!a.session.empty()) {
     std::string error;
     r.session = read_session_file(a.session, error);

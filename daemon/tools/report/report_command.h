@@ -20,6 +20,7 @@ struct ReportArguments {
   std::string floors;   ///< JSON file for every floor's motion; empty: no file
   std::string drifts;   ///< JSON file for drifts, damage and placard; empty: no file
   std::string session;  ///< session.json of `framewatch record`; may be empty
+  std::string about;    ///< file for the head of the report, see read_about(); may be empty
   PictureFiles figures;
   bool quiet = false;
 };

@@ -37,22 +37,6 @@ double least_change(const SessionEstimates& s, std::size_t p) {
              : usual.least_change_g;
 }
 
-/// Returns windows of the session that do not overlap, with the parameter's values.
-std::vector<WindowValue> separate(const SessionEstimates& s, std::size_t p) {
-  std::vector<WindowValue> out;
-  const std::vector<std::uint8_t> settled = settled_windows(s, p);
-  std::int64_t end_us = 0;
-  for (std::size_t w = 0; w < s.windows(); ++w) {
-    if (settled[w] == 0 || !std::isfinite(s.value[p][w]) ||
-        (!out.empty() && s.start_us[w] < end_us))
-      continue;
-    end_us = s.end_us[w];
-    out.push_back({estimator::from_microseconds(s.start_us[w]),
-                   estimator::from_microseconds(end_us), s.value[p][w], s.std_error[p][w]});
-  }
-  return out;
-}
-
 /// Returns the time of a change. A window whose share x lies after the change has the share x of
 /// the change; the time is the one whose windows fit best.
 std::int64_t moment(const SessionEstimates& s, const ElementChange& c, std::int64_t from_us,
@@ -182,6 +166,21 @@ bool is_recovery(const SessionEstimates& s, const SessionMotion* motion,
 
 }  // namespace
 
+std::vector<WindowValue> separate_windows(const SessionEstimates& s, std::size_t p) {
+  std::vector<WindowValue> out;
+  const std::vector<std::uint8_t> settled = settled_windows(s, p);
+  std::int64_t end_us = 0;
+  for (std::size_t w = 0; w < s.windows(); ++w) {
+    if (settled[w] == 0 || !std::isfinite(s.value[p][w]) ||
+        (!out.empty() && s.start_us[w] < end_us))
+      continue;
+    end_us = s.end_us[w];
+    out.push_back({estimator::from_microseconds(s.start_us[w]),
+                   estimator::from_microseconds(end_us), s.value[p][w], s.std_error[p][w]});
+  }
+  return out;
+}
+
 std::vector<ElementChange> take_recoveries(const SessionEstimates& s, const SessionMotion* motion,
                                            std::vector<ElementChange>& changes) {
   std::vector<ElementChange> recoveries, others;
@@ -194,7 +193,7 @@ std::vector<ElementChange> take_recoveries(const SessionEstimates& s, const Sess
 std::vector<ElementChange> session_changes(const SessionEstimates& s) {
   std::vector<ElementChange> out;
   for (std::size_t p = 0; p < s.parameters(); ++p)
-    if (is_stiffness(s, p)) divide(s, p, separate(s, p), out);
+    if (is_stiffness(s, p)) divide(s, p, separate_windows(s, p), out);
   take_records(s, out);
   std::stable_sort(out.begin(), out.end(), [](const ElementChange& a, const ElementChange& b) {
     return a.since_us < b.since_us;
@@ -229,7 +228,7 @@ std::vector<JudgedElement> judged_elements(const SessionEstimates& s) {
   std::vector<JudgedElement> out;
   for (std::size_t p = 0; p < s.parameters(); ++p) {
     if (!is_stiffness(s, p)) continue;
-    const std::vector<WindowValue> values = separate(s, p);
+    const std::vector<WindowValue> values = separate_windows(s, p);
     if (values.size() < kFewestWindows) continue;
     const estimator::WindowMean mean = estimator::mean_of(values, 0, values.size());
     // The error of the difference between two halves.

@@ -29,6 +29,10 @@ struct ElementChange {
 /// Returns a parameter of a log with name, kind and stories; other fields are not set.
 estimator::Parameter parameter_of(const parameter_table_t& table, std::size_t parameter);
 
+/// Returns windows of the session that do not overlap, with the parameter's values.
+std::vector<estimator::WindowValue> separate_windows(const SessionEstimates& session,
+                                                     std::size_t parameter);
+
 /// Returns " (one of stories 5 to 8 may have lost up to 8 %)" for a loss of a group of stories; ""
 /// for any other change.
 std::string of_one_story(const parameter_table_t& table, const ElementChange& change);

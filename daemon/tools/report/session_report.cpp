@@ -322,13 +322,15 @@ std::string check_section(const SessionReport& r) {
 
 std::string session_report_html(const SessionReport& r) {
   const std::string title = r.title.empty() ? "Session of " + r.estimates.table.structure : r.title;
-  return html_page(title, verdict_section(r) + (r.drifts ? placard_section(*r.drifts) : "") +
-                              "<h1>" + html_text(title) + "</h1>\n" + events_section(r) +
-                              session_section(r) + figure_10_section(r) +
-                              (r.drifts ? drift_table_section(*r.drifts, *r.config) : "") +
-                              floors_section(r) + loops_section(r) + transfer_section(r) +
-                              modes_section(r) + histories_section(r) + parameter_section(r) +
-                              check_section(r) + health_section(r) + provenance(r));
+  const std::string head = verdict_section(r) + (r.drifts ? placard_section(*r.drifts) : "") +
+                           "<h1>" + html_text(title) + "</h1>\n" + about_section(r.about);
+  return html_page(
+      title, head + with_contents(events_section(r) + session_section(r) +
+                                  photograph_section(r.about) + figure_10_section(r) +
+                                  (r.drifts ? drift_table_section(*r.drifts, *r.config) : "") +
+                                  floors_section(r) + loops_section(r) + transfer_section(r) +
+                                  modes_section(r) + histories_section(r) + parameter_section(r) +
+                                  check_section(r) + health_section(r) + provenance(r)));
 }
 
 void evaluate(SessionReport& r) {

@@ -11,6 +11,7 @@
 #include "daemon/monitor/estimates/session_estimates.h"
 #include "daemon/tools/report/frame_loops.h"
 #include "daemon/tools/report/record_modes.h"
+#include "daemon/tools/report/report_about.h"
 #include "daemon/tools/report/report_units.h"
 #include "daemon/tools/report/session_changes.h"
 #include "daemon/tools/report/session_file.h"
@@ -72,6 +73,7 @@ struct SessionReport {
   std::optional<DriftReport> drifts;    ///< with motion
   std::optional<SessionFloors> floors;  ///< with motion, for a building of groups
   std::vector<ReportFile> files;
+  ReportAbout about;
   ReportUnits units;
   FrameLabels labels;  ///< what people call the frames; from config
 };
