@@ -189,10 +189,14 @@ std::string modes_table(const RecordModes& m) {
     const estimator::MeasuredMode measured =
         row.measured < 0 ? estimator::MeasuredMode{estimator::kNaN, estimator::kNaN, 0, 0, {}, 0}
                          : m.measured[static_cast<std::size_t>(row.measured)];
+    const auto with_error = [](double value, double error, const char* format) {
+      return or_dash(value, format) +
+             (std::isfinite(error) ? fmt::format(" &plusmn; {:.1g}", error) : "");
+    };
     rows.push_back(
-        {fmt::format("{}", ++number), or_dash(identified.frequency_hz, "{:.4f}"),
-         or_dash(identified.frequency_error_hz, "{:.2g}"),
-         percent(identified.damping_ratio, "{:.3f}"), percent(identified.damping_error, "{:.2g}"),
+        {fmt::format("{}", ++number),
+         with_error(identified.frequency_hz, identified.frequency_error_hz, "{:.4f}"),
+         with_error(100 * identified.damping_ratio, 100 * identified.damping_error, "{:.3f}"),
          or_dash(measured.frequency_hz, "{:.4f}"), percent(measured.damping_ratio, "{:.2f}"),
          or_dash(design.frequency_hz, "{:.4f}"), percent(design.damping_ratio, "{:.2f}"),
          or_dash(row.mac_measured, "{:.4f}"), or_dash(row.mac_design, "{:.4f}"),
@@ -202,11 +206,10 @@ std::string modes_table(const RecordModes& m) {
                              : "",
          html_text(row.note)});
   }
-  std::string out = html_table(
-      {"mode", "identified, Hz", "standard error", "damping, %", "standard error", "measured, Hz",
-       "damping, %", "design, Hz", "damping, %", "MAC identified, measured",
-       "MAC identified, design", "MAC design, measured", "motion", ""},
-      rows);
+  std::string out =
+      html_table({"mode", "identified, Hz", "damping, %", "measured, Hz", "damping, %",
+                  "design, Hz", "damping, %", "MAC i-m", "MAC i-d", "MAC d-m", "motion", ""},
+                 rows);
   for (const auto& [list, reason] : {std::pair{"Identified", m.no_identified},
                                      {"Measured", m.no_measured},
                                      {"Design", m.no_design}})
@@ -245,10 +248,11 @@ std::string changed_modes(const RecordModes& before, const RecordModes& after) {
 std::string modes_section(const SessionReport& r) {
   if (r.modes.empty()) return "";
   std::string out =
-      "<h2>Modes</h2>\n<p>Identified: of the model refined from the stage; its standard errors "
-      "come from the covariance of all stiffnesses and dampings and do not include errors of the "
-      "model. Measured: from the samples alone. A MAC of 1 means equal shapes at the "
-      "channels.</p>\n";
+      "<h2>Modes</h2>\n<p>Identified: of the model refined from the stage. Its standard errors "
+      "(&plusmn;) come from the covariance of all stiffnesses and dampings and leave out errors of "
+      "the model. Measured: from the samples alone. MAC compares shapes at the channels; 1 means "
+      "equal: identified with measured (i-m) and with the design (i-d), design with measured "
+      "(d-m).</p>\n";
   const RecordModes *before = nullptr, *after = nullptr;
   for (const StageModes& of : r.modes) {
     const ReportStage& stage = r.compared[of.stage];
