@@ -253,11 +253,6 @@ std::string modes_section(const SessionReport& r) {
       "the model. Measured: from the samples alone. MAC compares shapes at the channels; 1 means "
       "equal: identified with measured (i-m) and with the design (i-d), design with measured "
       "(d-m).</p>\n";
-  its standard errors
-      "
-      "come from the covariance of all stiffnesses and dampings and do not include errors of the "
-      "model. Measured: from the samples alone. A MAC of 1 means equal shapes at the "
-      "channels.</p>\n";
   const RecordModes *before = nullptr, *after = nullptr;
   for (const StageModes& of : r.modes) {
     const ReportStage& stage = r.compared[of.stage];
