@@ -5,6 +5,6 @@ before() {
 }
 expected='
 ^mode +identified
-^ +1 +[0-9.]+ +[0-9.]+ .*(x|y|rotation)$
+^ +1 +[0-9.]+ .*(x|y|rotation)$
 identified from [0-9.]+ s
 '
