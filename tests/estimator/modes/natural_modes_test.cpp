@@ -117,8 +117,8 @@ TEST(NaturalModes, AtOnePercentNoiseAreWithinTheirErrors) {
   constexpr int kMotions = 12;
   constexpr double kRecord_s = 60;
   constexpr double kRate_hz = 100;
-  // In mode 3 all floors shear and hardly anything else moves: no estimator knows the panels better
-  // (its bound of one standard error is 0.04 % of the frequency and of the ratio 0.5 %).
+  // In mode 3 all floors shear and hardly anything else moves, so the frames' sensors show it
+  // least: its standard error in 40 s is 0.05 % of the frequency.
   constexpr std::size_t kShearing = 3;
   constexpr double kOfShearing = 4;
   const Structure s = test::table1();
