@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Real layouts of accelerometers, tests/init/layouts: init describes each from options alone, and
-// check accepts its file without an edit.
+// Layouts of accelerometers of buildings and laboratories, tests/init/layouts: init describes each
+// from options alone, and check accepts its file without an edit. Those of known buildings are like
+// them; levels and sizes are not copied from their sheets.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
