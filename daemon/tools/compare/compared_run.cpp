@@ -56,9 +56,10 @@ class RunReader {
   bool read() {
     const std::size_t before = problems_.size();
     const std::size_t at = source_.rfind('@');
+    std::error_code error;
     if (at != std::string::npos && source_.find("..", at) != std::string::npos)
       read_history(source_.substr(0, at), source_.substr(at + 1));
-    else if (fs::exists(source_ + "/" + kSessionJson))
+    else if (fs::exists(source_ + "/" + kSessionJson, error))
       read_session();
     else if (source_.ends_with(".toml"))
       read_design();
