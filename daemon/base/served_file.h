@@ -18,8 +18,8 @@ inline constexpr std::size_t kMaxServedBytes = 16 << 20;
 std::optional<std::string> read_served_file(const std::string& folder,
                                             const std::vector<std::string>& names);
 
-/// Opens such a file of any size for reading. Returns a negative descriptor if there
-/// is no such file.
+/// Opens a file of any size that is reached like that, for reading. Returns a negative descriptor
+/// if the path leads to no such file.
 drivers::Descriptor open_served_file(const std::string& folder,
                                      const std::vector<std::string>& names);
 

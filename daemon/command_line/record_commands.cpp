@@ -44,6 +44,26 @@ void add_page_options(CLI::App* command, std::string& about, PictureFiles& figur
       ->default_str("svg");
 }
 
+/// Adds CONFIG, LOG, the options of record files, --from and --to. to_default: --to if it is
+/// absent.
+template <typename Arguments>
+void add_stretch(CommandList& commands, CLI::App* command, Arguments& arguments,
+                 const std::string& to_default) {
+  add_config(commands, command, arguments.config);
+  commands.reads_files(command
+                           ->add_option("LOG", arguments.inputs,
+                                        "LCM event logs and record files (CSV), in order of time")
+                           ->required());
+  add_record_options(command, arguments.record);
+  command->add_option("--from", arguments.from_s, "seconds after the first sample")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--to", arguments.to_s,
+                   "seconds after the first sample (default: " + to_default + ")")
+      ->check(CLI::PositiveNumber);
+}
+
 }  // namespace
 
 void add_replay(CommandList& commands) {
@@ -187,19 +207,7 @@ void add_refine(CommandList& commands) {
       "with the\nsmallest error that any estimate could have (Cramer-Rao bound)",
       "Exit status: 0 refined, 1 not refined (too short, too quiet, ...), 2 bad usage or "
       "input.\nExample: framewatch refine building.toml record.lcmlog --from 12 --to 22");
-  add_config(commands, command, arguments.config);
-  commands.reads_files(command
-                           ->add_option("LOG", arguments.inputs,
-                                        "LCM event logs and record files (CSV), in order of time")
-                           ->required());
-  add_record_options(command, arguments.record);
-  command->add_option("--from", arguments.from_s, "seconds after the first sample")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--to", arguments.to_s,
-                   "seconds after the first sample (default: one window after --from)")
-      ->check(CLI::PositiveNumber);
+  add_stretch(commands, command, arguments, "one window after --from");
   command->add_flag("!--no-prior", arguments.prior, "do not use the design as a prior");
   add_json(command, arguments.json);
   add_max_size(command);
@@ -215,17 +223,7 @@ void add_modes(CommandList& commands) {
       "Exit status: 0 done, 1 neither model nor record gives a mode, 2 bad usage or "
       "input.\nExamples:\n  framewatch modes building.toml record.csv\n  framewatch modes "
       "building.toml record.lcmlog --from 12 --to 40 --csv modes.csv --mat modes.mat");
-  add_config(commands, command, arguments.config);
-  commands.reads_files(command
-                           ->add_option("LOG", arguments.inputs,
-                                        "LCM event logs and record files (CSV), in order of time")
-                           ->required());
-  add_record_options(command, arguments.record);
-  command->add_option("--from", arguments.from_s, "seconds after the first sample")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--to", arguments.to_s, "seconds after the first sample (default: the end)")
-      ->check(CLI::PositiveNumber);
+  add_stretch(commands, command, arguments, "the end");
   add_file(command, "--csv", arguments.csv, "also write one row per mode, with the shapes, as CSV");
   add_file(command, "--mat", arguments.mat, "also write the modes for MATLAB (MAT 5)");
   add_json(command, arguments.json);

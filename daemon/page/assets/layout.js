@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// What people arranged, in the browser's storage: cards, their order and width, and what they chose on them.
+// The browser's storage keeps the layout that people chose: which cards, their order and width, and the choices on them.
 const layout = readLayout();
 function readLayout() {
   try {

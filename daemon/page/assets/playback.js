@@ -83,7 +83,7 @@ class Playback {
     range.setAttribute('aria-valuetext', $('p-time').textContent);
   }
 }
-// What happens meanwhile must not go unseen.
+// Shows the open findings of the live building while a session plays.
 function showNow(a) {
   const open = a.findings.filter(f => !f.acknowledged).length;
   say2($('p-now'), open ? `Now: ${open} open finding${open > 1 ? 's' : ''}!` : '');

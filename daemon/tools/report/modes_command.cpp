@@ -9,13 +9,12 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/json.h"
+#include "daemon/base/numbers.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/tools/replay/replayed_estimates.h"
 #include "daemon/tools/report/modes_output.h"
-#include "estimator/numeric/nan.h"
-#include "estimator/numeric/quantile.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -29,10 +28,9 @@ std::vector<double> medians(const EstimateArrays& estimates, int parameters, std
     for (std::size_t w = 0; w < estimates.end_us.size(); ++w) {
       const double value =
           estimates.value[w * static_cast<std::size_t>(parameters) + static_cast<std::size_t>(p)];
-      if (std::isfinite(value) && estimates.start_us[w] >= from_us && estimates.end_us[w] <= to_us)
-        values.push_back(value);
+      if (estimates.start_us[w] >= from_us && estimates.end_us[w] <= to_us) values.push_back(value);
     }
-    out.push_back(values.empty() ? estimator::kNaN : estimator::upper_median(values));
+    out.push_back(median(values));
   }
   return out;
 }

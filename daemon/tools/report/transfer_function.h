@@ -25,7 +25,7 @@ struct TransferFunction {
   /// times its frequency whose shape is most like it (MAC); NaN: no peak is alike.
   double measured_mode_hz = 0, model_mode_hz = 0;
   double mac = 0;            ///< of the two shapes, weighted by mass: 1 is the same; NaN: no pair
-  std::string no_pair = {};  ///< why there is no pair; empty: there is one
+  std::string no_pair = {};  ///< why no modes were paired; empty: a pair was found
 
   /// Returns (measured over model)^2, the factor from reference-static to reference-dynamic
   /// stiffnesses; NaN without a pair of modes.

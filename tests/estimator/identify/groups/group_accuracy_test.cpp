@@ -125,7 +125,8 @@ Eigen::VectorXd mean_values(const PipelineConfig& config, const Eigen::MatrixXd&
 }
 
 TEST(GroupAccuracy, ErrorsOfGainAndTimeArePredicted) {
-  // Of the groups whose error is large, and of the others.
+  // The predicted error may differ from the true one by a factor of kNear in groups with a large
+  // error, and of kRough in the others.
   constexpr double kGain = 0.002, kTime_s = 1e-4, kNear = 1.3, kRough = 2.2;
   TallTrial trial;
   trial.floors = {5, 18, 19, 20};  // the last two move nearly alike
