@@ -139,6 +139,7 @@ RunningModel::Taps RunningModel::taps(int steps, double late) {
 
 void RunningModel::restart() {
   (void)building_->resume(rest_);
+  motion_ = rest_;
   building_->set_time(kAfterEverything_s);
   recent_.setZero();
   before_.setZero();
@@ -178,7 +179,6 @@ void RunningModel::step_through() {
 }
 
 void RunningModel::leap() {
-  motion_ = building_->motion();
   auto to = std::copy(motion_.begin(), motion_.end(), from_.begin());
   to = std::copy(before_.begin(), before_.end(), to);
   before_.setZero();

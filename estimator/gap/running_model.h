@@ -47,7 +47,10 @@ class RunningModel {
     a.within(newest_, 0, kTaps - 1);
     a(filter_);
     if (a.kReading) {
-      if (!building_->resume(motion)) restart();
+      if (building_->resume(motion))
+        motion_ = motion;
+      else
+        restart();
     }
   }
 
@@ -69,7 +72,8 @@ class RunningModel {
   /// All steps of an instant at once, without rows if the building is not linear: (motion, before_,
   /// recent_ newest first) x motion, padded.
   RowMatrix leap_;
-  std::vector<double> from_, to_, motion_;  ///< of leap_
+  std::vector<double> from_, to_;  ///< of leap_
+  std::vector<double> motion_;     ///< of a linear building
   int newest_ = 0;
   double bias_share_;  ///< weight of a sample in the slow mean, which is bias
   Eigen::VectorXd bias_, before_, after_;
