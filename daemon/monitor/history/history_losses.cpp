@@ -103,9 +103,10 @@ std::string losses_text(const HistoryLosses& l) {
   for (const std::string& name : l.covariates) with += (with.empty() ? "" : ", ") + name;
   const estimator::LifeBudget budget;
   std::string out = fmt::format(
-      "{} days with values, {} to {}; weather: {}\n{} of at least {:.0f} % that weather does not "
+      "{} with values, {} to {}; weather: {}\n{} of at least {:.0f} % that weather does not "
       "explain; a false one in {:.0f} years has a probability of {:.0f} %\n",
-      l.days, day_text(static_cast<double>(l.from_us / kDay_us)),
+      l.days == 1 ? "1 day" : fmt::format("{} days", l.days),
+      day_text(static_cast<double>(l.from_us / kDay_us)),
       day_text(static_cast<double>(l.to_us / kDay_us)),
       with.empty() ? "not known, the season stands for it" : with,
       l.found.empty()       ? "no loss"
