@@ -14,9 +14,10 @@ namespace framewatch::estimator {
 /// that was never seen widens the error; w wanders slowly and comes back. How much it wanders is
 /// not known: kWander candidates run side by side. A drop is a step, of at least `least` and beyond
 /// it of half-normal size. Every day begins a bet on a step from that day on. A bet's capital is
-/// the mean likelihood of the values since then with a step, over that of the best candidate without
-/// one: an element may begin to wander more on any day. The bets' stakes add up to 1 over the life, so the
-/// total capital of a healthy quantity ever reaches 1/a with probability a at most (Ville).
+/// the mean likelihood of the values since then with a step, over that of the best candidate
+/// without one: an element may begin to wander more on any day. The bets' stakes add up to 1 over
+/// the life, so the total capital of a healthy quantity ever reaches 1/a with probability a at most
+/// (Ville).
 class LossEvidence {
  public:
   /// Standard deviation of what a step exceeds the least one by, in the prior.
