@@ -123,7 +123,7 @@ function applyTheme() {
 // Forgets all that was shown, for another time of a recorded session.
 function forget() {
   known = []; rms = []; past.length = 0; alarms.clear();
-  estimate = boxes = fit = undefined; baseline = [];
+  estimate = boxes = fit = undefined; baseline = []; modes = {modes: []};
   told = {answers: [], findings: [], drift: []};
   lastRow = null; lastMotion = 0;
   building.begin(); building.largest = 1e-6; building.ratio = []; building.known = [];
@@ -283,7 +283,7 @@ function onRefused(r) {
 function showRefusal(id) { if (ours.has(id) && refusals.has(id)) warn('Refused: ' + refusals.get(id)); }
 const handlers = {
   motion: onMotion, estimate: onEstimate, late: onLate, status: onStatus, alarm: onAlarm, session: onSession, gap: onGap, can: onCan, refused: onRefused,
-  boxes: b => { boxes = window.framewatch.boxes = b; }, fit: f => { fit = f; }, answers: onAnswers, last: onLast, baseline: b => { baseline = b.value; },
+  boxes: b => { boxes = window.framewatch.boxes = b; }, fit: f => { fit = f; }, answers: onAnswers, last: onLast, modes: onModes, baseline: b => { baseline = b.value; },
   dropped: d => { window.framewatch.dropped = d.events; }, alive: () => {},
 };
 // Events that do not belong to the time of a recorded session.
@@ -306,6 +306,7 @@ function draw() {
   frames.push(now);
   while (frames[0] < now - 1000) frames.shift();
   if (playback) playback.step(now);
+  building.shape = shapeAt(now);
   building.draw();
   for (const s of Object.values(strips)) s.draw();
   signals.draw(now);

@@ -77,6 +77,7 @@ class LiveView {
   void detect_changes(int window, const window_estimate_t& estimate);
   /// Returns true for a change of stiffness that the page found, as it does without [watch].
   bool found_here(const event_t& event) const;
+  void show_modes();
   void keep(const std::string& name, std::string json);
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);
@@ -100,6 +101,7 @@ class LiveView {
   std::optional<PageWatch> watch_;
   std::optional<window_estimate_t> newest_;
   bool new_estimate_ = false;  ///< since the last flush
+  bool new_values_ = true;     ///< since the modes were computed
   bool late_rows_ = false;     ///< rows of history_ got values since the last flush
   std::int64_t flushes_ = 0, motion_at_ = 0, estimate_at_ = 0;  ///< times in flushes
   Shaking shaking_;
