@@ -43,5 +43,7 @@ function shapeAt(now) {
   shape.drawn = now;
   return m ? m.re.map((v, i) => v * Math.cos(shape.phase) - m.im[i] * Math.sin(shape.phase)) : null;
 }
-$('shape-moves').onclick = () => { shape.moves = !shape.moves; showModes(); };
-$('shape-end').onclick = () => showShape(-1);
+function startModes() {
+  $('shape-moves').onclick = () => { shape.moves = !shape.moves; showModes(); };
+  $('shape-end').onclick = () => showShape(-1);
+}

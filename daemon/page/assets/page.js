@@ -101,6 +101,7 @@ function start(json) {
   strips.residual = new Strip(parent, 'residual over response', 'Part of the measured response that the identified model does not explain in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
   signals = new Signals();
   startSession();
+  startModes();
   choose(Math.max(0, plan.parameters.findIndex(q => q.name === layout.element)));
   const bar = document.createElement('canvas');
   bar.id = 'bar'; bar.width = 160; bar.height = 14; bar.style.width = '160px'; bar.setAttribute('aria-hidden', 'true');

@@ -39,6 +39,7 @@ LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give
           intake_settings(config)),
       shaking_(config.pipeline),
       grouped_(config.pipeline.parameters().grouped()),
+      mode_errors_(config.pipeline.options.window_s),
       reports_(config.event_report ? config.event_report->directory : std::string()),
       ring_(kRing),
       history_(config.pipeline),
@@ -278,10 +279,11 @@ void LiveView::show_modes() {
     const std::lock_guard<std::mutex> lock(mutex_);
     newest = history_.newest();
   }
-  const std::string json = modes_json(
-      parameters_.empty() || same_parameters_
-          ? page_modes(config_, newest)
-          : PageModes{.why = "the estimator has other parameters than this page"});
+  PageModes modes = parameters_.empty() || same_parameters_
+                        ? page_modes(config_, newest)
+                        : PageModes{.why = "the estimator has other parameters than this page"};
+  if (modes.why.empty()) mode_errors_.correct(modes);
+  const std::string json = modes_json(modes);
   const std::lock_guard<std::mutex> lock(mutex_);
   push_if_new("modes", json);
 }

@@ -20,6 +20,7 @@
 #include "daemon/page/findings/finding.h"
 #include "daemon/page/findings/shaking.h"
 #include "daemon/page/view/event_ring.h"
+#include "daemon/page/view/mode_errors.h"
 #include "daemon/page/view/page_alarms.h"
 #include "daemon/page/view/page_commands.h"
 #include "daemon/page/view/page_history.h"
@@ -47,6 +48,8 @@ class LiveView {
   /// Takes one LCM message. Ignores other channels and malformed payloads. received_us: host clock.
   void message(const std::string& channel, const void* data, std::size_t size,
                const drivers::LcmSender& sender = {}, std::int64_t received_us = 0);
+  /// Takes a sample that did not come over LCM.
+  void sample(const estimator::AccelSample& sample);
   /// Pushes events for everything that has changed since the last call. Call it 20 times a second.
   void flush();
 
@@ -81,7 +84,6 @@ class LiveView {
   void keep(const std::string& name, std::string json);
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);
-  void sample(const estimator::AccelSample& sample);
   void instant(const estimator::SampleSet& instant);
   void push_if_new(const std::string& name, const std::string& json);
   /// Returns the baseline by parameter; empty while none is known.
@@ -108,6 +110,7 @@ class LiveView {
   bool grouped_;                  ///< parameters describe groups of stories
   bool same_parameters_ = false;  ///< the estimator has the parameters of config_
   ModelFit fit_;
+  ModeErrors mode_errors_;
   NewestEventReport reports_;
   bool same_config_ = true;
 

@@ -13,9 +13,9 @@
 namespace framewatch::daemon {
 namespace {
 
-/// theta of the identified building with its variances.
+/// theta of the identified building. The variance is of values of the newest window, or of others.
 struct ModalValues {
-  Eigen::VectorXd theta, variance;
+  Eigen::VectorXd theta, newest_variance, other_variance;
 };
 
 bool has_value(const NewestValues& newest, std::size_t p) {
@@ -23,28 +23,31 @@ bool has_value(const NewestValues& newest, std::size_t p) {
 }
 
 /// Returns the newest values, with the design's for elements without one. Sets the reasons and the
-/// oldest time in `out`.
+/// times in `out`.
 ModalValues modal_values(const Config& config, const NewestValues& newest, PageModes& out) {
   using enum estimator::ParameterKind;
   const estimator::ParameterTable table = config.pipeline.parameters();
   const bool designed = config.pipeline.design.size() > 0;
-  ModalValues m{identified_design(config.pipeline), Eigen::VectorXd::Zero(table.size())};
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(table.size());
+  ModalValues m{identified_design(config.pipeline), zero, zero};
+  out.newest_us = *std::ranges::max_element(newest.end_us);
+  out.oldest_us = out.newest_us;
   for (int p = 0; p < table.size(); ++p) {
     const auto at = static_cast<std::size_t>(p);
-    double error = estimator::design_tolerance(table[p].kind) * m.theta[p];
+    const auto kind = table[p].kind;
     if (has_value(newest, at)) {
       m.theta[p] = newest.value[at];
-      error = newest.std_error[at];
-      out.oldest_us = out.oldest_us == 0 ? newest.end_us[at]
-                                         : std::min(out.oldest_us, newest.end_us[at]);
-    } else {
-      const bool damping = table[p].kind == frame_damping || table[p].kind == panel_damping;
-      std::string& why = damping ? out.why_no_damping : out.why;
-      if (why.empty() && (!designed || table[p].kind == frame_stiffness ||
-                          table[p].kind == frame_damping))
-        why = fmt::format("{} ({}) has no value yet", place_words(table[p].name), table[p].name);
+      out.oldest_us = std::min(out.oldest_us, newest.end_us[at]);
+      (newest.end_us[at] == out.newest_us ? m.newest_variance : m.other_variance)[p] =
+          newest.std_error[at] * newest.std_error[at];
+      continue;
     }
-    m.variance[p] = error * error;
+    m.other_variance[p] = std::pow(estimator::design_tolerance(kind) * m.theta[p], 2);
+    if (designed && kind != frame_stiffness && kind != frame_damping) continue;
+    std::string& why =
+        kind == frame_damping || kind == panel_damping ? out.why_no_damping : out.why;
+    if (why.empty())
+      why = fmt::format("{} ({}) has no value yet", place_words(table[p].name), table[p].name);
   }
   return m;
 }
@@ -68,9 +71,14 @@ PageModes page_modes(const Config& config, const NewestValues& newest) {
   }
   const ModalValues values = modal_values(config, newest, out);
   if (!out.why.empty()) return out;
-  out.modes = natural_modes(pipeline.structure, table, estimator::story_design(pipeline),
-                            values.theta, Eigen::MatrixXd(values.variance.asDiagonal()), kMostPageModes)
-                  .modes;
+  const auto modes = [&](const Eigen::VectorXd& variance) {
+    return natural_modes(pipeline.structure, table, estimator::story_design(pipeline), values.theta,
+                         Eigen::MatrixXd(variance.asDiagonal()), kMostPageModes)
+        .modes;
+  };
+  out.modes = modes(values.newest_variance);
+  for (const estimator::NaturalMode& mode : modes(values.other_variance))
+    out.other_errors.push_back({mode.frequency_error_hz, mode.damping_error});
   if (out.modes.empty()) out.why = "the building is overdamped";
   return out;
 }
