@@ -104,7 +104,7 @@ async function acknowledged(page) {
   await page.focus('#findings button');
   await page.keyboard.press('Enter');
   await until(page, 'acknowledged: by keyboard, and no longer open', () => document.querySelectorAll('#findings button').length === 0);
-  await until(page, 'acknowledged: the change stays', () => /Yes\. .*kx_1_y2 is acknowledged/s.test(document.querySelector('#answers > li').innerText));
+  await until(page, 'acknowledged: the change stays', () => /Yes\. .*Story 1, frame y2 \(kx_1_y2\) is acknowledged/s.test(document.querySelector('#answers > li').innerText));
   await until(page, 'acknowledged: nothing to do', () => /Nothing\./.test(document.querySelectorAll('#answers > li')[3].innerText));
   expect(/acknowledged/.test(await page.textContent('#alarms')), 'acknowledged: the list of events shows it');
   await shot(page, 'acknowledged');

@@ -156,6 +156,7 @@ class Building {
       g.stroke();
     }
     this.levels(g, style);
+    this.labels(g, style);
     const dead = deadChannels();
     this.dots = [];
     for (const a of this.plan.axes) {
@@ -183,6 +184,15 @@ class Building {
       this.path(g, [this.at(0, 0, s), this.at(x, 0, s), this.at(x, y, s), this.at(0, y, s)]);
       g.stroke();
     }
+  }
+  // Writes the labels of frames at their feet.
+  labels(g, style) {
+    g.font = '12px system-ui'; g.textAlign = 'center'; g.fillStyle = style.ink; g.strokeStyle = style.card; g.lineWidth = 4;
+    const n = this.plan.frames_x.length;
+    [...this.plan.frames_x, ...this.plan.frames_y].forEach((name, f) => {
+      const text = this.plan.labels[name], [x, y] = this.project(f < n ? [this.xs.at(-1) / 2, this.ys[f], 0] : [this.xs[f - n], this.ys.at(-1) / 2, 0]);
+      if (text) { g.strokeText(text, x, y + 4); g.fillText(text, x, y + 4); }
+    });
   }
   // Position of a channel that is not on a frame.
   planPoint(a) {

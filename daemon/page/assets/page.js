@@ -77,11 +77,12 @@ function choose(i) {
   const q = plan.parameters[i], size = reference(i) || (known[i] ? known[i].value : 1);
   strip = engineering(size, q.unit);
   past.forEach(pushStiffness);
-  strips.k.name(`${q.name}, ${strip.unit}: value and one standard error`);
+  strips.k.name(`${called(q)}, ${strip.unit}: value and one standard error`);
   strips.drift.name(q.frames.length ? `${q.last_story > q.story ? 'drift over' : 'story drift in'} ${place(q)}, mm` : 'story drift: choose a frame');
 }
 function start(json) {
   plan = json;
+  for (const q of plan.parameters) q.last_story ??= q.story;
   document.title = `${plan.name || 'building'} - framewatch`;
   $('name').textContent = plan.name || 'framewatch';
   $('version').textContent = `framewatch ${plan.version}, configuration ${plan.config_sha256.slice(0, 12)}`;
@@ -250,6 +251,7 @@ function onAlarm(a) {
   alarms.set(a.id, a);
   showAlarms();
 }
+const placeName = name => { const q = plan.parameters.find(p => p.name === name); return q ? called(q) : name; };
 function showAlarms() {
   const list = [...alarms.values()].sort((x, y) => y.time_us - x.time_us);
   $('no-alarms').hidden = list.length > 0;
@@ -259,7 +261,7 @@ function showAlarms() {
   const body = table.createTBody();
   for (const x of list.slice(0, 100)) {
     const row = body.insertRow();
-    cell(row, when(x.since_us)); cell(row, x.place).title = x.message;
+    cell(row, when(x.since_us)); cell(row, placeName(x.place)).title = x.message;
     cell(row, x.told ? x.message : percent(x.value, x.error), x.told ? 'text' : ''); cell(row, x.told ? '' : percent(x.error, x.error).slice(1));
     cell(row, x.state === 0 ? `over, ${when(x.time_us)}` : !x.acknowledged ? 'open' : x.who ? `acknowledged by ${x.who}` : 'acknowledged').title = x.comment || '';
     const last = row.insertCell();

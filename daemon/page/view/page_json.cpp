@@ -8,6 +8,7 @@
 
 #include "daemon/base/json.h"
 #include "daemon/monitor/estimates/estimate_table.h"
+#include "daemon/monitor/events/change_words.h"
 #include "daemon/tools/report/record_modes.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"
@@ -183,11 +184,10 @@ std::string building_json(const Config& config, double rate_hz) {
                           {"unit", table[p].unit},
                           {"kind", static_cast<int>(table[p].kind)},
                           {"story", table[p].story},
-                          {"last_story", table[p].last_story},
                           {"frames", table[p].frames},
                           {"direction", letter(table[p].direction)},
-                          {"frame", table[p].frame},
                           {"design", design.size() > p ? Json(design[p]) : Json(nullptr)}});
+    if (table[p].last_story > table[p].story) parameters.back()["last_story"] = table[p].last_story;
     if (table[p].panel >= 0) parameters.back()["panel"] = table[p].panel;
   }
   Json axes = Json::array();
@@ -201,6 +201,7 @@ std::string building_json(const Config& config, double rate_hz) {
                     {"stories", s.stories},
                     {"frames_x", s.frames_x},
                     {"frames_y", s.frames_y},
+                    {"labels", frame_labels(s)},
                     {"span_x_m", s.span_x},
                     {"span_y_m", s.span_y},
                     {"story_height_m", s.story_height},

@@ -47,7 +47,8 @@ ModalValues modal_values(const Config& config, const NewestValues& newest, PageM
     std::string& why =
         kind == frame_damping || kind == panel_damping ? out.why_no_damping : out.why;
     if (why.empty())
-      why = fmt::format("{} ({}) has no value yet", place_words(table[p].name), table[p].name);
+      why =
+          named_place(table[p].name, frame_labels(config.pipeline.structure)) + " has no value yet";
   }
   return m;
 }
@@ -73,12 +74,16 @@ PageModes page_modes(const Config& config, const NewestValues& newest) {
   if (!out.why.empty()) return out;
   const auto modes = [&](const Eigen::VectorXd& variance) {
     return natural_modes(pipeline.structure, table, estimator::story_design(pipeline), values.theta,
-                         Eigen::MatrixXd(variance.asDiagonal()), kMostPageModes)
+                         Eigen::MatrixXd(variance.asDiagonal()), kMostPageModes, false)
         .modes;
   };
   out.modes = modes(values.newest_variance);
-  for (const estimator::NaturalMode& mode : modes(values.other_variance))
-    out.other_errors.push_back({mode.frequency_error_hz, mode.damping_error});
+  out.other_errors.resize(out.modes.size());
+  if (!values.other_variance.isZero(0)) {
+    const auto of_others = modes(values.other_variance);
+    for (std::size_t i = 0; i < of_others.size(); ++i)
+      out.other_errors[i] = {of_others[i].frequency_error_hz, of_others[i].damping_error};
+  }
   if (out.modes.empty()) out.why = "the building is overdamped";
   return out;
 }
