@@ -150,7 +150,7 @@ function valueTable() {
   const body = table.createTBody();
   plan.parameters.forEach((q, i) => {
     const row = body.insertRow(), v = known[i], has = boxes && boxes.count[i] > 0, f = findingOf(q.name);
-    cell(row, called(q)).title = `${q.name}: ${place(q)}`;
+    cell(row, called(q) + (q.kind === 2 && called(q) !== q.name ? ', damping' : '')).title = `${q.name}: ${place(q)}`;
     cell(row, v ? withError(v.value, v.error, q.unit) : whyNot(i));
     cell(row, v ? fitShort(i) : '');
     cell(row, v ? (isNow(i) ? 'now' : when(v.us)) : '');

@@ -187,7 +187,7 @@ class Building {
   }
   // Writes the labels of frames at their feet.
   labels(g, style) {
-    g.font = '12px system-ui'; g.textAlign = 'center'; g.fillStyle = style.ink; g.strokeStyle = style.card; g.lineWidth = 4;
+    g.font = '12px system-ui'; g.textAlign = 'center'; g.fillStyle = style.ink; g.strokeStyle = style.card; g.lineWidth = 4; g.lineJoin = 'round';
     const n = this.plan.frames_x.length;
     [...this.plan.frames_x, ...this.plan.frames_y].forEach((name, f) => {
       const text = this.plan.labels[name], [x, y] = this.project(f < n ? [this.xs.at(-1) / 2, this.ys[f], 0] : [this.xs[f - n], this.ys.at(-1) / 2, 0]);
@@ -223,7 +223,7 @@ class Building {
       const at = [this.w - 6, Math.max(30, (low[1] + high[1]) / 2)], words = `story ${i + 1}: ${digits(100 * d.ratio, 3)} %`;
       if (taken.some(y => Math.abs(y - at[1]) < 14)) continue; // a tall building has no room for all
       taken.push(at[1]);
-      g.strokeStyle = style.card; g.lineWidth = 4;
+      g.strokeStyle = style.card; g.lineWidth = 4; g.lineJoin = 'round';
       g.strokeText(words, ...at); g.fillText(words, ...at);
     }
   }

@@ -185,10 +185,12 @@ std::string building_json(const Config& config, double rate_hz) {
                           {"kind", static_cast<int>(table[p].kind)},
                           {"story", table[p].story},
                           {"frames", table[p].frames},
-                          {"direction", letter(table[p].direction)},
                           {"design", design.size() > p ? Json(design[p]) : Json(nullptr)}});
     if (table[p].last_story > table[p].story) parameters.back()["last_story"] = table[p].last_story;
-    if (table[p].panel >= 0) parameters.back()["panel"] = table[p].panel;
+    if (table[p].panel >= 0)
+      parameters.back()["panel"] = table[p].panel;
+    else
+      parameters.back()["direction"] = letter(table[p].direction);
   }
   Json axes = Json::array();
   for (const estimator::SensorAxis& a : config.pipeline.axes) {
