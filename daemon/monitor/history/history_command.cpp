@@ -15,9 +15,11 @@
 #include "daemon/base/progress.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/history_losses.h"
 #include "daemon/monitor/history/history_overview.h"
 #include "daemon/monitor/history/raw_export.h"
 #include "daemon/monitor/history/summary_query.h"
+#include "daemon/monitor/history/weather_table.h"
 #include "drivers/files/number_text.h"
 #include "drivers/files/text_output.h"
 #include "estimator/numeric/nan.h"
@@ -160,6 +162,18 @@ int fail(const std::vector<std::string>& problems) {
   return kBadInput;
 }
 
+/// Shows the losses that the daily means prove. Returns the exit code: 1 when there is one.
+int show_losses(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries) {
+  std::vector<std::string> problems;
+  const auto weather = a.weather.empty() ? WeatherTable{} : read_weather(a.weather, problems);
+  if (!weather) return fail(problems);
+  const HistoryLosses losses = find_losses(r, summaries, *weather);
+  if (const std::string why = summaries.problem(); !why.empty())
+    return fail({fmt::format("{}: {}", summary_file(r.directory), why)});
+  fmt::print("{}", a.json ? losses_json(losses) : printable_lines(losses_text(losses)));
+  return losses.found.empty() ? 0 : kFailed;
+}
+
 }  // namespace
 
 int history(const HistoryArguments& a) {
@@ -167,6 +181,7 @@ int history(const HistoryArguments& a) {
   SummaryQuery summaries;
   const auto request = read_history_request(a, summaries, problems);
   if (!request) return fail(problems);
+  if (a.losses) return show_losses(a, *request, summaries);
   const bool asks = !a.out.empty() || !a.raw.empty() || a.events || !a.parameters.empty() ||
                     a.period_s != 0 || !a.from.empty() || !a.to.empty() || !a.last.empty();
   if (!asks)

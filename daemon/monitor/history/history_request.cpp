@@ -91,6 +91,9 @@ class RequestReader {
     if (!a_.out.empty() && a_.out != drivers::kStandardOutput && !a_.out.ends_with(".csv") &&
         !a_.out.ends_with(".csv.gz") && !a_.out.ends_with(".mat"))
       problem(a_.out + ": the name for summaries must end in .csv, .csv.gz or .mat");
+    if (a_.losses && (!a_.out.empty() || !a_.raw.empty() || a_.events))
+      problem("--losses cannot be combined with --out, --raw or --events");
+    if (!a_.weather.empty() && !a_.losses) problem("--weather needs --losses");
     if (!a_.raw.empty())
       if (const std::string rule = problem_of_raw_name(a_.raw); !rule.empty()) problem(rule);
     const auto code = [&](const char* option, const std::string& text, std::size_t most) {
