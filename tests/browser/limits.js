@@ -111,7 +111,8 @@ async function main() {
   const now = await page.evaluate(() => ({rows: framewatch.rows, us: framewatch.motion.first_us + framewatch.motion.rows.at(-1)[0], lost: framewatch.lost, leftOut: framewatch.leftOut, dropped: framewatch.dropped, latency: [...framewatch.latency].sort((a, b) => a - b)[framewatch.latency.length >> 1]}));
   await page.screenshot({path: 'page-3x3.png'});
   const weight = await page.evaluate(() => [...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource')]
-    .filter(e => !e.name.endsWith('/events')).reduce((sum, e) => sum + e.decodedBodySize, 0));
+    .filter(e => !/\/events$|\.json$/.test(e.name)) // files of the page, without the building's data
+    .reduce((sum, e) => sum + e.decodedBodySize, 0));
   fps.sort((a, b) => a - b);
   const rate = 1e6 * (now.rows - before.rows) / (now.us - before.us);
   console.log(`3x3 bays: ${rate.toFixed(1)} rows/s, ${now.lost} lost, ${now.dropped} events dropped, ${fps[0]} to ${fps.at(-1)} frames/s (median ${fps[5]}), sample to screen ${now.latency.toFixed(0)} ms in the median, ${weight} bytes`);

@@ -80,7 +80,7 @@ async function main() {
     const e = window.framewatch.estimate;
     if (e && (!window.seen.length || window.seen.at(-1).end_us !== e.end_us)) window.seen.push(e);
   }, 20));
-  const simulation = start(program, 'simulate', scenario, '--lcm', url, '--seconds', '38', '--quiet');
+  const simulation = start(program, 'simulate', scenario, '--lcm', url, '--seconds', '50', '--quiet');
 
   await page.waitForFunction(() => window.framewatch.motion);
   const first_us = await page.evaluate(() => window.framewatch.motion.first_us);

@@ -62,8 +62,8 @@ async function shapes(page, where) {
 
 async function complete(page) {
   await page.click('#values summary');
-  const cut = () => page.evaluate(() => [...document.querySelectorAll('.across,.scroll,.strip,#g-plot,h2,p,li')].filter(e => e.offsetParent && e.scrollWidth > e.clientWidth + 1).map(e => e.id || e.firstElementChild && e.firstElementChild.id || e.className));
-  for (const width of [390, 1400, 2560]) {
+  const cut = () => page.evaluate(() => [...document.querySelectorAll('.card,.across,.scroll,.strip,#g-plot,h2,p,li')].filter(e => e.offsetParent && e.scrollWidth > e.clientWidth + 1).map(e => e.id || e.firstElementChild && e.firstElementChild.id || e.className));
+  for (const width of [390, 900, 1400, 2560]) {
     await page.setViewportSize({width, height: 1000});
     await pause(1200);
     for (const scheme of ['light', 'dark']) {
