@@ -1,11 +1,14 @@
-# framewatch_page(<target> <folder> <template> <file>...): files of a page become part of a library, as they
-# are: entries of a map from "/name" to type and content stand for @web_entries@ in the template.
+# framewatch_page(<target> <folder> <template> <file>...): files of a page become part of a library, without
+# indentation and comments (// and a space): entries of a map from "/name" to type and content stand for @web_entries@ in
+# the template.
 function(framewatch_page target folder template)
   set(types html "text/html\; charset=utf-8" css "text/css\; charset=utf-8"
     js "text/javascript\; charset=utf-8" svg image/svg+xml)
   set(web_entries "")
   foreach(name IN LISTS ARGN)
     file(READ ${folder}/${name} content)
+    string(REGEX REPLACE "\n +" "\n" content "${content}")
+    string(REGEX REPLACE "\n//[^\n]*| +// [^\n]*" "" content "${content}")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
       ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/${name})
     string(REGEX MATCH "[a-z]+$" ending ${name})

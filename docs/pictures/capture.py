@@ -5,7 +5,7 @@
 
 Takes pictures with headless Chromium, as WebP.
 `live` waits until the live page at URL names an element that lost stiffness, then takes the page in both color schemes.
-It hides damping and the list of drifts, so that verdict, building and element fit one picture.
+It hides damping, modes and the list of drifts, so that verdict, building and element fit one picture.
 `report` lays FILE out WIDTH pixels wide and takes it from its top to the bottom of the element END (JavaScript)."""
 import base64
 import os
@@ -17,7 +17,7 @@ import chromium
 
 LIMIT_BYTES = 150_000
 LIVE_WIDTH = 1200  # CSS pixels
-HIDDEN = """#answers li ul, #boxes-card h2:nth-of-type(2), #boxes-card .across:nth-of-type(n+3) { display: none }
+HIDDEN = """#answers li ul, #building-card h2:nth-of-type(2), #modes, #boxes-card h2:nth-of-type(2), #boxes-card .across:nth-of-type(n+3) { display: none }
             #building { flex-basis: 310px !important } ::-webkit-scrollbar { display: none }"""
 NAMED = "document.getElementById('findings').textContent.includes('of its stiffness')"
 SETTLE_S = 6  # after the change is named: until a window holds only samples after it

@@ -259,7 +259,7 @@ void purify(const Structure& s, const ModalBuilding& building, std::vector<Pole>
 
 NaturalModes natural_modes(const Structure& s, const ParameterTable& table,
                            const GroupDesign& design, const VectorXd& theta,
-                           const MatrixXd& covariance, int most) {
+                           const MatrixXd& covariance, int most, bool shape_errors) {
   NaturalModes out;
   if (s.degrees_of_freedom() > kMostModalFreedoms) return out;
   const ModalBuilding building(s, table, design, theta);
@@ -323,7 +323,7 @@ NaturalModes natural_modes(const Structure& s, const ParameterTable& table,
     };
     mode.frequency_error_hz = error(frequency.row(i).transpose());
     mode.damping_error = error(of_damping);
-    if (mode.first_equal != mode.last_equal) continue;
+    if (!shape_errors || mode.first_equal != mode.last_equal) continue;
     const MatrixXd slopes = shape_derivatives(building, pole, by).real();
     const MatrixXd spread = slopes * covariance;
     for (Index d = 0; d < slopes.rows(); ++d)

@@ -44,10 +44,12 @@ inline constexpr int kMostModalFreedoms = 1200;
 ///
 /// table: of theta. theta: > 0, SI. design: what theta replaces, with the bending stiffness. Its
 /// parameters remain where no parameter of theta describes an element. covariance: of theta; empty:
-/// no standard errors. most: number of modes. Returns no modes if the building has more than
+/// no standard errors. most: number of modes. shape_errors: false leaves NaN in
+/// NaturalMode::shape_error, which cost most. Returns no modes if the building has more than
 /// kMostModalFreedoms degrees of freedom, or if the eigenvalues do not converge.
 NaturalModes natural_modes(const Structure& structure, const ParameterTable& table,
                            const GroupDesign& design, const Eigen::VectorXd& theta,
-                           const Eigen::MatrixXd& covariance = {}, int most = 24);
+                           const Eigen::MatrixXd& covariance = {}, int most = 24,
+                           bool shape_errors = true);
 
 }  // namespace framewatch::estimator

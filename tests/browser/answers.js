@@ -4,25 +4,15 @@
 // with a dead sensor, and opened afterwards. Takes a screenshot of each and checks the words on
 // it.
 const {chromium} = require('playwright-core');
-const {spawn} = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');
+const {kPatience, expect, start, pause, until, addressOf, run} = require('./common.js');
 
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
-const kPatience = {timeout: 60000}; // for anything, on a busy machine
 const kDrop_s = 60, kPlayed_s = 900, // ended after the check
    kDrop_ratio = -0.15, kMaxOff = 0.02, kSharp = 0.6, kLate_s = 20;
 const kDamaged = 'kx_1_y2', kDead = 'F1-X2';
 
-const children = [], failures = [];
-const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
-function start(...args) {
-  const child = spawn(program, args, {stdio: ['ignore', 'pipe', 'inherit']});
-  children.push(child);
-  child.ended = new Promise(done => child.on('exit', done));
-  return child;
-}
-const pause = ms => new Promise(done => setTimeout(done, ms));
 const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-answers-'));
 process.env.XDG_RUNTIME_DIR = work; // where commands go
 const url = `udpm://239.255.76.67:${6800 + process.pid % 1000}?ttl=0`;
@@ -33,7 +23,7 @@ function scenario(name, {change = '', motion = t => t, building = t => t}) {
   fs.writeFileSync(out, motion(fs.readFileSync(path.join(configs, 'scenario_table_two_story.toml'), 'utf8')).replace('"table_two_story.toml"', JSON.stringify(own)) + change);
   return out;
 }
-const shake = file => start('simulate', file, '--lcm', url, '--seconds', String(kPlayed_s), '--quiet');
+const shake = file => start(program, 'simulate', file, '--lcm', url, '--seconds', String(kPlayed_s), '--quiet');
 async function stop(child) { child.kill('SIGINT'); await child.ended; await pause(5000); }
 const drop = at_s => `\n[[change]]\nat_s = ${at_s}.0\nparameter = "${kDamaged}"\nfactor = ${1 + kDrop_ratio}\n`;
 
@@ -47,10 +37,6 @@ async function open(browser, address, options) {
 }
 const answer = (page, i) => page.locator('#answers > li').nth(i).innerText();
 const state = page => page.textContent('#state');
-async function until(page, what, condition, argument) {
-  const came = await page.waitForFunction(condition, argument, kPatience).catch(() => null);
-  expect(came !== null, what);
-}
 async function shot(page, name) {
   await page.evaluate(() => scrollTo(0, 0));
   await pause(700);
@@ -118,7 +104,7 @@ async function acknowledged(page) {
   await page.focus('#findings button');
   await page.keyboard.press('Enter');
   await until(page, 'acknowledged: by keyboard, and no longer open', () => document.querySelectorAll('#findings button').length === 0);
-  await until(page, 'acknowledged: the change stays', () => /Yes\. .*kx_1_y2 is acknowledged/s.test(document.querySelector('#answers > li').innerText));
+  await until(page, 'acknowledged: the change stays', () => /Yes\. .*Story 1, frame y2 \(kx_1_y2\) is acknowledged/s.test(document.querySelector('#answers > li').innerText));
   await until(page, 'acknowledged: nothing to do', () => /Nothing\./.test(document.querySelectorAll('#answers > li')[3].innerText));
   expect(/acknowledged/.test(await page.textContent('#alarms')), 'acknowledged: the list of events shows it');
   await shot(page, 'acknowledged');
@@ -176,7 +162,7 @@ async function strongMotionIsOver(page) {
 
 async function startedAnew(browser, serve, options) {
   await stop(serve);
-  const page = await open(browser, await addressOf(start(...options)));
+  const page = await open(browser, await addressOf(start(program, ...options)));
   await until(page, 'restarted: answers appear', () => framewatch.told && framewatch.told.answers.length === 4);
   await until(page, 'restarted: ages are shown', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
   // Without [watch] the page's own server finds the change, and nobody stores it.
@@ -189,14 +175,12 @@ async function startedAnew(browser, serve, options) {
   await shot(page, 'started-anew');
 }
 
-const addressOf = serve => new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
-
 async function main() {
   const own = path.join(work, 'building.toml');
   fs.writeFileSync(own, fs.readFileSync(config, 'utf8') + '\n[history]\ndirectory = "history"\n\n[event_report]\ndirectory = "events"\n');
-  start('run', own, '--url', url, '--quiet');
+  start(program, 'run', own, '--url', url, '--quiet');
   const served = ['serve', own, '--url', url, '--port', '0', '--sessions', path.join(work, 'none'), '--quiet'];
-  const serve = start(...served);
+  const serve = start(program, ...served);
   const address = await addressOf(serve);
   const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
   const page = await open(browser, address);
@@ -232,9 +216,5 @@ async function main() {
   await browser.close();
 }
 
-main().catch(e => { failures.push(e.message); console.log(e); }).finally(() => {
-  for (const child of children) if (child.exitCode === null) child.kill();
-  fs.rmSync(work, {recursive: true, force: true});
-  console.log(failures.length ? `answers: ${failures.length} failed` : 'answers: all passed');
-  process.exit(failures.length ? 1 : 0);
-});
+process.on('exit', () => fs.rmSync(work, {recursive: true, force: true}));
+run('answers', main);

@@ -3,24 +3,16 @@
 // Measures whether the page bears the paper's building of 3x3 bays at 100 Hz: every row, 50
 // frames/s, 200 viewers, 2000 slow connections, and an estimator that none of them disturbs.
 const {chromium} = require('playwright-core');
-const {spawn, spawnSync} = require('child_process');
+const {spawnSync} = require('child_process');
 const fs = require('fs'), http = require('http'), net = require('net'), os = require('os'), path = require('path');
+const {expect, start, pause, addressOf, run} = require('./common.js');
 
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
 const kViewers = 200, kSlow = 2000, kMaxCpu = 0.10, kMinFrames = 20, kQuietFrames = 50, kPlayed_s = 12;
 const kPageBytes = 160000;
 
-const children = [], failures = [];
-const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
-function start(command, ...args) {
-  const child = spawn(command, args, {stdio: ['ignore', 'pipe', 'inherit']});
-  children.push(child);
-  child.ended = new Promise(done => child.on('exit', done));
-  return child;
-}
 async function stop(child) { child.kill('SIGINT'); await child.ended; }
-const pause = ms => new Promise(done => setTimeout(done, ms));
 const config = path.join(configs, 'paper_table2.toml'), scenario = path.join(configs, 'scenario_paper_table2.toml');
 const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-limits-'));
 process.env.XDG_RUNTIME_DIR = work; // where commands go
@@ -66,7 +58,7 @@ async function played(raw, count, slow = 0) {
   const recorder = start(program, 'record', config, '--url', url, '--no-check', '--no-report', '--quiet', '--out', sessions);
   const estimator = start(program, 'run', config, '--url', url, '--quiet');
   const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--quiet');
-  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+  const address = await addressOf(serve);
   const viewers = Array.from({length: count}, () => new Viewer(address));
   await pause(500);
   const dawdlers = Array.from({length: slow}, () => new Dawdler(address));
@@ -106,7 +98,7 @@ async function main() {
 
   start(program, 'run', config, '--url', url, '--quiet');
   const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--quiet');
-  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+  const address = await addressOf(serve);
   const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
   const page = await browser.newPage({viewport: {width: 1400, height: 1350}});
   await page.goto(address);
@@ -119,7 +111,8 @@ async function main() {
   const now = await page.evaluate(() => ({rows: framewatch.rows, us: framewatch.motion.first_us + framewatch.motion.rows.at(-1)[0], lost: framewatch.lost, leftOut: framewatch.leftOut, dropped: framewatch.dropped, latency: [...framewatch.latency].sort((a, b) => a - b)[framewatch.latency.length >> 1]}));
   await page.screenshot({path: 'page-3x3.png'});
   const weight = await page.evaluate(() => [...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource')]
-    .filter(e => !e.name.endsWith('/events')).reduce((sum, e) => sum + e.decodedBodySize, 0));
+    .filter(e => !/\/events$|\.json$/.test(e.name)) // files of the page, without the building's data
+    .reduce((sum, e) => sum + e.decodedBodySize, 0));
   fps.sort((a, b) => a - b);
   const rate = 1e6 * (now.rows - before.rows) / (now.us - before.us);
   console.log(`3x3 bays: ${rate.toFixed(1)} rows/s, ${now.lost} lost, ${now.dropped} events dropped, ${fps[0]} to ${fps.at(-1)} frames/s (median ${fps[5]}), sample to screen ${now.latency.toFixed(0)} ms in the median, ${weight} bytes`);
@@ -130,9 +123,5 @@ async function main() {
   await browser.close();
 }
 
-main().catch(e => { failures.push(e.message); console.log(e); }).finally(() => {
-  for (const child of children) if (child.exitCode === null) child.kill();
-  fs.rmSync(work, {recursive: true, force: true});
-  console.log(failures.length ? `limits: ${failures.length} failed` : 'limits: all passed');
-  process.exit(failures.length ? 1 : 0);
-});
+process.on('exit', () => fs.rmSync(work, {recursive: true, force: true}));
+run('limits', main);

@@ -4,25 +4,16 @@
 // LCM. The page must show the messages of LCM, name a drop of stiffness in time, record a session,
 // open its report, and report silence.
 const {chromium} = require('playwright-core');
-const {spawn, execFileSync} = require('child_process');
+const {execFileSync} = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');
+const {kPatience, expect, start, pause, addressOf, run} = require('./common.js');
 
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
 const kDrop_s = 20, kTold_s = 5, kDrop_ratio = -0.15, kDropError = 0.02;
 const kMinFrames = 20, kMaxLatency_ms = 150; // frames/s on a busy machine; 50 on a quiet one
-const kPatience = {timeout: 30000};
 const kCompared = 200, kRecorded_s = 6, kReported_s = 15;
 
-const children = [], failures = [];
-const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
-function start(command, ...args) {
-  const child = spawn(command, args, {stdio: ['ignore', 'pipe', 'inherit']});
-  children.push(child);
-  child.ended = new Promise(done => child.on('exit', done));
-  return child;
-}
-const pause = ms => new Promise(done => setTimeout(done, ms));
 
 // A session from the page: the channels are checked, it starts, ends after its length, has a report.
 async function record(page) {
@@ -74,7 +65,7 @@ async function main() {
   const sessions = path.join(work, 'sessions');
   const recorder = start(program, 'record', config, '--url', url, '--standby', '--quiet', '--out', sessions);
   const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--sessions', sessions, '--quiet');
-  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+  const address = await addressOf(serve);
 
   const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
   const page = await browser.newPage({viewport: {width: 1400, height: 1350}});
@@ -89,7 +80,7 @@ async function main() {
     const e = window.framewatch.estimate;
     if (e && (!window.seen.length || window.seen.at(-1).end_us !== e.end_us)) window.seen.push(e);
   }, 20));
-  const simulation = start(program, 'simulate', scenario, '--lcm', url, '--seconds', '38', '--quiet');
+  const simulation = start(program, 'simulate', scenario, '--lcm', url, '--seconds', '50', '--quiet');
 
   await page.waitForFunction(() => window.framewatch.motion);
   const first_us = await page.evaluate(() => window.framewatch.motion.first_us);
@@ -149,8 +140,4 @@ async function main() {
   fs.rmSync(work, {recursive: true});
 }
 
-main().catch(e => { failures.push(e.message); console.log(e); }).finally(() => {
-  for (const child of children) if (child.exitCode === null) child.kill();
-  console.log(failures.length ? `browser: ${failures.length} failed` : 'browser: all passed');
-  process.exit(failures.length ? 1 : 0);
-});
+run('page', main);

@@ -4,26 +4,15 @@
 // survive a reload; sessions that are empty, cut off or of another building are refused in words. The page is gray
 // until it has a baseline, and cuts nothing off at 390, 1400 and 2560 px and on paper.
 const {chromium} = require('playwright-core');
-const {spawn, execFileSync} = require('child_process');
+const {execFileSync} = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');
+const {kPatience, expect, start, pause, until, addressOf, run} = require('./common.js');
 
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
-const kPatience = {timeout: 60000}, kRecorded_s = 30, kDrop_s = 14, kSpeedError = 0.25, kSeek_ms = 250, kPaper_px = 718;
+const kRecorded_s = 30, kDrop_s = 14, kSpeedError = 0.25, kSeek_ms = 250, kPaper_px = 718, kVisible_px = 15, kStands_px = 2; // new values change a shape a little
 
-const children = [], failures = [], said = [];
-const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
-function start(...args) {
-  const child = spawn(program, args, {stdio: ['ignore', 'pipe', 'inherit']});
-  children.push(child);
-  child.ended = new Promise(done => child.on('exit', done));
-  return child;
-}
-const pause = ms => new Promise(done => setTimeout(done, ms));
-async function until(page, what, condition, argument) {
-  const came = await page.waitForFunction(condition, argument, kPatience).catch(() => null);
-  expect(came !== null, what);
-}
+const said = [];
 const scrub = async (page, t_s) => {
   await page.evaluate(t => { const at = document.getElementById('p-at'); at.value = t; at.dispatchEvent(new Event('input')); }, t_s);
   await page.waitForFunction(t => playback.sought === null && Math.abs(playback.at - t) < 0.06, t_s, kPatience);
@@ -39,10 +28,42 @@ async function gray(page) {
   await page.screenshot({path: 'session-gray.png', fullPage: true});
 }
 
+// The shape of a mode moves on the picture as long as people let it.
+async function shapes(page, where) {
+  await until(page, `${where}: modes are listed`, () => framewatch.modes && framewatch.modes.modes.length === 8);
+  const rows = await page.locator('#modes tbody tr').allInnerTexts();
+  expect(rows.length === 8 && rows.every(r => /\d ± \d[\d.]* Hz/.test(r) && /\d ± \d[\d.]* %/.test(r)), `${where}: each with its errors: ${rows[0].replace(/\s+/g, ' ')}`);
+  const button = page.getByRole('button', {name: 'Shape of mode 2'});
+  // The way of the roof's corner on the screen, and the shape's largest entry.
+  const moved = () => page.evaluate(async () => {
+    const seen = [];
+    for (let i = 0; i < 100; i++) { await new Promise(requestAnimationFrame); seen.push([...building.at(0, 0, plan.stories).slice(0, 2), Math.max(...building.shape.map(Math.abs))]); }
+    const range = k => Math.max(...seen.map(s => s[k])) - Math.min(...seen.map(s => s[k]));
+    return {way_px: Math.hypot(range(0), range(1)), largest: Math.max(...seen.map(s => s[2]))};
+  });
+  await button.click();
+  const moving = await moved();
+  expect(moving.way_px > kVisible_px && moving.largest > 0.9 && moving.largest < 1.01, `${where}: the shape moves ${moving.way_px.toFixed(0)} px`);
+  expect(await button.getAttribute('aria-pressed') === 'true' && /mode 2, [\d.]+ Hz, slowed/.test(await page.textContent('#shape')), `${where}: the page says which`);
+  await page.locator('#building-card').screenshot({path: `session-shape-${where}.png`});
+  await page.click('#shape-moves');
+  expect((await moved()).way_px < kStands_px && await page.textContent('#shape-moves') === 'Move', `${where}: a pause stands still`);
+  await page.click('#shape-end');
+  await until(page, `${where}: back to the measured motion`, () => building.shape === null && document.getElementById('shape').offsetParent === null);
+  await page.emulateMedia({reducedMotion: 'reduce'});
+  await button.click();
+  const still = await moved();
+  expect(still.way_px < kStands_px && still.largest > 0.99, `${where}: with reduced motion it stands deformed`);
+  await page.click('#shape-moves');
+  expect((await moved()).way_px > kVisible_px, `${where}: and moves if asked`);
+  await button.click();
+  await page.emulateMedia({reducedMotion: 'no-preference'});
+}
+
 async function complete(page) {
   await page.click('#values summary');
-  const cut = () => page.evaluate(() => [...document.querySelectorAll('.across,.scroll,.strip,#g-plot,h2,p,li')].filter(e => e.offsetParent && e.scrollWidth > e.clientWidth + 1).map(e => e.id || e.firstElementChild && e.firstElementChild.id || e.className));
-  for (const width of [390, 1400, 2560]) {
+  const cut = () => page.evaluate(() => [...document.querySelectorAll('.card,.across,.scroll,.strip,#g-plot,h2,p,li')].filter(e => e.offsetParent && e.scrollWidth > e.clientWidth + 1).map(e => e.id || e.firstElementChild && e.firstElementChild.id || e.className));
+  for (const width of [390, 900, 1400, 2560]) {
     await page.setViewportSize({width, height: 1000});
     await pause(1200);
     for (const scheme of ['light', 'dark']) {
@@ -88,14 +109,16 @@ async function plays(page, folder) {
   for (const t of [12, 25, 12]) {
     await scrub(page, t);
     seen.push(await page.evaluate(() => ({us: estimate.end_us, value: estimate.value[1], row: lastRow, accel: Array.from(strips.accel.ring.view()[1]), ring: strips.k.ring.n,
-      open: told.findings.length, answer: document.getElementById('answers').innerText, ratio: building.ratio[1]})));
+      open: told.findings.length, alarms: document.getElementById('alarms').innerText, answer: document.getElementById('answers').innerText, ratio: building.ratio[1]})));
   }
   expect(seen.every(s => logged.get(s.us) === s.value), `the value at each time is the one of the log: ${seen.map(s => s.value)}`);
   expect(Math.abs(seen[1].row - seen[0].row - 13e6) < 2e5, '13 s of the slider are 13 s of the sensors');
   const differ = Object.keys(seen[0]).filter(k => JSON.stringify(seen[0][k]) !== JSON.stringify(seen[2][k]));
   expect(differ.length === 0, `there and back shows the same ${differ}`);
   expect(seen[0].accel.length > 900 && seen[0].accel.every(v => v !== null), 'the strips have the 10 s before');
-  expect(seen[0].open === 0 && /No\. None of/.test(seen[0].answer) && seen[1].open === 1 && /Yes\..*kx_1_y2/.test(seen[1].answer) && Math.abs(seen[1].ratio - 0.85) < 0.02, 'answers and colors are those of the time');
+  expect(seen[0].open === 0 && /No\. None of/.test(seen[0].answer) && seen[1].open === 1 && /Yes\. Story 1, north wall \(kx_1_y2\) has lost/.test(seen[1].answer) && Math.abs(seen[1].ratio - 0.85) < 0.02, 'answers and colors are those of the time');
+  await shapes(page, 'recorded');
+  expect(seen[1].alarms.includes('story 1, north wall') && await page.evaluate(() => called(plan.parameters[1]) === 'story 1, north wall' && called(plan.parameters[4]) === 'ky_1_x1'), 'frames have the labels that people gave');
   const ms = await page.evaluate(() => { const from = performance.now(); playback.seek(25); return performance.now() - from; });
   expect(ms < kSeek_ms, `a jump takes ${ms.toFixed(0)} ms`);
   await scrub(page, 2);
@@ -174,20 +197,22 @@ async function main() {
   const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-session-'));
   process.env.XDG_RUNTIME_DIR = work; // where commands go
   const url = `udpm://239.255.76.67:${8800 + process.pid % 1000}?ttl=0`;
-  const config = path.join(configs, 'table_two_story.toml'), scenario = path.join(work, 'scenario.toml'), sessions = path.join(work, 'sessions');
+  const config = path.join(work, 'building.toml'), scenario = path.join(work, 'scenario.toml'), sessions = path.join(work, 'sessions');
+  fs.writeFileSync(config, fs.readFileSync(path.join(configs, 'table_two_story.toml'), 'utf8').replace('frames_y', 'labels_x = ["south wall", "north wall"]\nframes_y'));
   fs.writeFileSync(scenario, fs.readFileSync(path.join(configs, 'scenario_table_two_story.toml'), 'utf8')
-    .replace('"table_two_story.toml"', JSON.stringify(fs.realpathSync(config))) + `\n[[change]]\nat_s = ${kDrop_s}.0\nparameter = "kx_1_y2"\nfactor = 0.85\n`);
-  start('run', config, '--url', url, '--quiet');
-  const recorder = start('record', config, '--url', url, '--quiet', '--out', sessions, '--seconds', String(kRecorded_s), '--test', 'scrubbed', '--no-check');
-  const serve = start('serve', config, '--url', url, '--port', '0', '--sessions', sessions, '--quiet');
-  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+    .replace('"table_two_story.toml"', JSON.stringify(config)) + `\n[[change]]\nat_s = ${kDrop_s}.0\nparameter = "kx_1_y2"\nfactor = 0.85\n`);
+  start(program, 'run', config, '--url', url, '--quiet');
+  const recorder = start(program, 'record', config, '--url', url, '--quiet', '--out', sessions, '--seconds', String(kRecorded_s), '--test', 'scrubbed', '--no-check');
+  const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--sessions', sessions, '--quiet');
+  const address = await addressOf(serve);
   const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
   const page = await browser.newPage({viewport: {width: 1400, height: 1350}});
   page.on('console', m => { if (!/409 \(Conflict\)/.test(m.text())) said.push(m.text()); });
   page.on('pageerror', e => said.push(e.stack));
   await page.goto(address);
-  start('simulate', scenario, '--lcm', url, '--seconds', '900', '--quiet');
+  start(program, 'simulate', scenario, '--lcm', url, '--seconds', '900', '--quiet');
   await gray(page);
+  await shapes(page, 'live');
   await recorder.ended;
   await complete(page);
   await page.reload();
@@ -201,8 +226,4 @@ async function main() {
   fs.rmSync(work, {recursive: true, force: true});
 }
 
-main().catch(e => { failures.push(e.message); console.log(e); }).finally(() => {
-  for (const child of children) if (child.exitCode === null) child.kill();
-  console.log(failures.length ? `session: ${failures.length} failed` : 'session: all passed');
-  process.exit(failures.length ? 1 : 0);
-});
+run('session', main);

@@ -28,7 +28,8 @@ const Option kStructure[] = {
      .target = into<&estimator::Structure::frames_y>},
     {.key = "labels_x",
      .meaning =
-         "What people call frames_x, such as \"north wall\", for reports. Default: their names.",
+         "What people call frames_x, such as \"north wall\": on the page, in events and reports. "
+         "Default: their names.",
      .target = into<&estimator::Structure::labels_x>},
     {.key = "labels_y",
      .meaning = "What people call frames_y.",

@@ -8,6 +8,7 @@
 #include "daemon/base/usual_time.h"
 #include "daemon/config/config_size.h"
 #include "daemon/monitor/estimation/estimation_events.h"
+#include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/identify/groups/layout_prediction.h"
@@ -206,7 +207,9 @@ bool Estimation::speaks_of_building() const {
 void Estimation::watch(const estimator::WindowEstimate& estimate) {
   if (!watch_ || !speaks_of_building()) return;
   for (const estimator::Alarm& alarm : watch_->push(estimate))
-    announce(with_recovery(stiffness_event(alarm, pipeline_.parameters()), alarm.parameter));
+    announce(with_recovery(
+        stiffness_event(alarm, pipeline_.parameters(), frame_labels(config_.pipeline.structure)),
+        alarm.parameter));
   follow_recovery(estimate);
 }
 

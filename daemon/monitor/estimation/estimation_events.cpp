@@ -30,13 +30,14 @@ std::string end_words(const estimator::Alarm& alarm, const std::string& name) {
   }
 }
 
-std::string change_words(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
+std::string change_words(const estimator::Alarm& alarm, const estimator::ParameterTable& table,
+                         const FrameLabels& labels) {
   const estimator::Change& c = alarm.change;
   if (alarm.parameter == estimator::ChangeRecord::kEverything)
     return common_change_sentence(c.ratio, alarm.measured ? c.std_error : estimator::kNaN);
   const estimator::Parameter& p = table[alarm.parameter];
-  if (!alarm.measured) return changing_sentence(p, c.ratio);
-  return change_sentence(p, c.ratio, c.std_error) +
+  if (!alarm.measured) return changing_sentence(p, c.ratio, labels);
+  return change_sentence(p, c.ratio, c.std_error, labels) +
          (alarm.reason == ChangeReason::further ? "; it has changed further" : "");
 }
 
@@ -82,7 +83,8 @@ std::string fault_words(const estimator::ChannelLaw& law,
 
 }  // namespace
 
-event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
+event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table,
+                        const FrameLabels& labels) {
   const bool everything = alarm.parameter == estimator::ChangeRecord::kEverything;
   const bool over = alarm.state == estimator::AlarmState::cleared;
   event_t m{};
@@ -96,9 +98,9 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
   m.value = alarm.measured ? 100 * alarm.change.ratio : estimator::kNaN;
   m.std_error = alarm.measured ? 100 * alarm.change.std_error : estimator::kNaN;
   m.unit = "%";
-  m.message =
-      over ? end_words(alarm, everything ? "everything" : m.place)
-           : fmt::format("{}, since {}", change_words(alarm, table), sensor_time_text(m.since_us));
+  m.message = over ? end_words(alarm, everything ? "everything" : named_place(m.place, labels))
+                   : fmt::format("{}, since {}", change_words(alarm, table, labels),
+                                 sensor_time_text(m.since_us));
   return m;
 }
 
@@ -142,7 +144,8 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
                         m.value, channel)
           : fmt::format("simulation and measurement agree again: {:.0f} % beyond noise", m.value);
   if (named && raised)
-    m.message += fmt::format("; {} is {:.1f} % (+-{:.1f} %) {} the model", m.place,
+    m.message += fmt::format("; {} is {:.1f} % (+-{:.1f} %) {} the model",
+                             named_place(m.place, frame_labels(config.pipeline.structure)),
                              100 * std::abs(news.ratio), 100 * news.std_error,
                              news.ratio < 0 ? "below" : "above");
   return m;

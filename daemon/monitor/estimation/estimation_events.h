@@ -4,6 +4,7 @@
 #include <framewatch/event_t.hpp>
 
 #include "daemon/config/config.h"
+#include "daemon/monitor/events/change_words.h"
 #include "estimator/gap/channel_check.h"
 #include "estimator/gap/gap.h"
 #include "estimator/watch/recovery.h"
@@ -14,7 +15,8 @@ namespace framewatch::daemon {
 /// Returns news of a parameter's alarm as an event of kind "stiffness_change". Value and std_error
 /// are in %, NaN while the record has no number. The place of a common change of all stiffnesses is
 /// kWholeBuilding.
-event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table);
+event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table,
+                        const FrameLabels& labels);
 
 /// Appends the recovery law's statement to the message of a stiffness event. Returns the event
 /// unchanged if it is cleared, or if nothing is known yet within Recovery::kRenew_s of the strong

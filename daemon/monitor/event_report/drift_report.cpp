@@ -13,6 +13,7 @@
 #include "daemon/base/html_page.h"
 #include "daemon/base/json.h"
 #include "daemon/monitor/event_report/report_words.h"
+#include "daemon/monitor/events/change_words.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -239,7 +240,8 @@ std::string drift_table_section(const DriftReport& r, const Config& config) {
     std::vector<std::string> row{fmt::format("story {}", d.story), drift_with_error(d)};
     if (d.known()) {
       row.push_back(fmt::format("{:.2f}", 1e3 * d.ratio * s.story_height[i]));
-      row.push_back(html_text(s.frame_name(d.frame)));
+      row.push_back(
+          html_text(frame_words(s.frame_name(d.frame), frame_labels(config.pipeline.structure))));
     } else {
       row.insert(row.end(), {"-", "-"});
     }

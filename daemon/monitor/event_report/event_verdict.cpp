@@ -55,16 +55,21 @@ void judge_drifts(const EventReport& r, const Config& config, EventVerdict& out,
 
 /// Returns the reason for an element that has a record. An open alarm is never green.
 Reason reason_of(const estimator::ChangeRecord& record, const estimator::Parameter& p,
-                 const EventReportSettings& s) {
+                 const Config& config) {
+  const EventReportSettings& s = *config.event_report;
   const estimator::Change& c = record.change;
-  if (!record.measured()) return {EventColor::yellow, 1, changing_sentence(p, c.ratio)};
+  if (!record.measured())
+    return {EventColor::yellow, 1,
+            changing_sentence(p, c.ratio, frame_labels(config.pipeline.structure))};
   const double loss = loss_of_one_story(p, std::clamp(-c.ratio, 0.0, 1.0));
   const bool red = loss >= s.red_loss_ratio;
-  return {red ? EventColor::red : EventColor::yellow,
-          loss / (red ? s.red_loss_ratio : s.yellow_loss_ratio),
-          fmt::format("{} (limit {:g} %{})", change_sentence(p, c.ratio, c.std_error),
-                      100 * (red ? s.red_loss_ratio : s.yellow_loss_ratio),
-                      p.last_story > p.story ? " of one story" : "")};
+  return {
+      red ? EventColor::red : EventColor::yellow,
+      loss / (red ? s.red_loss_ratio : s.yellow_loss_ratio),
+      fmt::format("{} (limit {:g} %{})",
+                  change_sentence(p, c.ratio, c.std_error, frame_labels(config.pipeline.structure)),
+                  100 * (red ? s.red_loss_ratio : s.yellow_loss_ratio),
+                  p.last_story > p.story ? " of one story" : "")};
 }
 
 /// Counts of the stiffnesses that could be compared, and of those whose error hides the limit.
@@ -87,7 +92,7 @@ Compared judge_losses(const EventReport& r, const Config& config, EventVerdict& 
     const estimator::ShakenStiffness& k = r.shaking.stiffness[static_cast<std::size_t>(i)];
     const estimator::Parameter& p = table[i];
     if (k.record.id != 0) {
-      reasons.push_back(reason_of(k.record, p, s));
+      reasons.push_back(reason_of(k.record, p, config));
       if (k.record.measured()) take_loss(-k.record.change.ratio);
     }
     if (!k.known()) continue;
@@ -107,8 +112,8 @@ Compared judge_losses(const EventReport& r, const Config& config, EventVerdict& 
     reasons.push_back(
         {color, of_story / limit,
          fmt::format("{} ({}) lost {:.1f} % (+-{:.1f} %) of {} stiffness{} (limit {:g} %)",
-                     element_words(p.name), p.name, 100 * loss, std::max(0.1, 100 * k.std_error()),
-                     group ? "their" : "its",
+                     element_words(p.name, frame_labels(config.pipeline.structure)), p.name,
+                     100 * loss, std::max(0.1, 100 * k.std_error()), group ? "their" : "its",
                      group ? fmt::format(", one of stories {} to {} up to {:.0f} %", p.story,
                                          p.last_story, 100 * of_story)
                            : std::string(),

@@ -104,6 +104,15 @@ std::string place_words(const std::string& parameter, const FrameLabels& labels)
   return fmt::format("{}, {} {}", p.stories, p.quantity == 'G' ? "panel" : frame_word(p), p.where);
 }
 
+std::string named_place(const std::string& parameter, const FrameLabels& labels) {
+  return fmt::format("{} ({})", place_words(parameter, labels), parameter);
+}
+
+std::string frame_words(const std::string& frame, const FrameLabels& labels) {
+  const auto found = labels.find(frame);
+  return found == labels.end() ? "frame " + frame : found->second;
+}
+
 std::string element_words(const std::string& parameter, const FrameLabels& labels) {
   const PlaceOfName p = place_of(parameter);
   if (p.stories.empty()) return fmt::format("bending of frames along {}", p.direction);
@@ -131,11 +140,12 @@ double loss_of_group(const estimator::Parameter& p, double loss_of_story) {
   return loss_of_story / (n - (n - 1) * loss_of_story);
 }
 
-std::string change_sentence(const estimator::Parameter& p, double ratio, double std_error) {
+std::string change_sentence(const estimator::Parameter& p, double ratio, double std_error,
+                            const FrameLabels& labels) {
   const bool group = p.last_story > p.story;
   std::string out =
-      fmt::format("{} ({}) {} {} {} of {} stiffness, give or take {}: {}", place_words(p.name),
-                  p.name, group ? "have" : "has", ratio < 0 ? "lost" : "gained",
+      fmt::format("{} {} {} {} of {} stiffness, give or take {}: {}", named_place(p.name, labels),
+                  group ? "have" : "has", ratio < 0 ? "lost" : "gained",
                   percent_words(std::abs(ratio), std_error), group ? "their" : "its",
                   percent_words(std_error, std_error), sure_words(std::abs(ratio) / std_error));
   if (group && ratio < 0)
@@ -145,10 +155,11 @@ std::string change_sentence(const estimator::Parameter& p, double ratio, double 
   return out;
 }
 
-std::string changing_sentence(const estimator::Parameter& p, double ratio) {
+std::string changing_sentence(const estimator::Parameter& p, double ratio,
+                              const FrameLabels& labels) {
   const bool group = p.last_story > p.story;
-  return fmt::format("{} ({}) {} changing: {} {} stiffness, how much is not known yet",
-                     place_words(p.name), p.name, group ? "are" : "is", group ? "they" : "it",
+  return fmt::format("{} {} changing: {} {} stiffness, how much is not known yet",
+                     named_place(p.name, labels), group ? "are" : "is", group ? "they" : "it",
                      ratio < 0 ? (group ? "lose" : "loses") : (group ? "gain" : "gains"));
 }
 

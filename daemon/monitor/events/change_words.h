@@ -19,6 +19,12 @@ FrameLabels frame_labels(const estimator::Structure& structure);
 /// x". A frame with a label has it instead of its name: "story 1, north wall". Takes any text.
 std::string place_words(const std::string& parameter, const FrameLabels& labels = {});
 
+/// Returns the place with the parameter, which leads to its line of the configuration: "story 1,
+/// north wall (kx_1_y2)".
+std::string named_place(const std::string& parameter, const FrameLabels& labels);
+/// Returns the words for the frame of a place: "north wall", or "frame y2" without a label.
+std::string frame_words(const std::string& frame, const FrameLabels& labels);
+
 /// Returns the words for the element that `parameter` belongs to: "frame y2 of story 1", "floor
 /// panel x1y1 of floor 2", "stories 6 to 12 along x", "frame y1 of stories 6 to 12", "bending of
 /// frames along x". A frame with a label has both: "north wall (y2) of story 1". Takes any text.
@@ -31,11 +37,13 @@ std::string percent_words(double ratio, double std_error);
 /// stiffness, give or take 0.4 %: 36 times its uncertainty". `ratio` is relative to the baseline
 /// and negative for a loss; `std_error` > 0. For a loss of a group of stories it adds the largest
 /// loss of a single story: "; one of stories 5 to 8 may have lost up to 8 %".
-std::string change_sentence(const estimator::Parameter& parameter, double ratio, double std_error);
+std::string change_sentence(const estimator::Parameter& parameter, double ratio, double std_error,
+                            const FrameLabels& labels);
 
 /// Returns a sentence about a change that is not measured yet: "story 1, frame y2 (kx_1_y2) is
 /// changing: it loses stiffness, how much is not known yet". Only the sign of `ratio` counts.
-std::string changing_sentence(const estimator::Parameter& parameter, double ratio);
+std::string changing_sentence(const estimator::Parameter& parameter, double ratio,
+                              const FrameLabels& labels);
 
 /// Returns "everything softened by 5.0 %, give or take 0.4 %: ...", followed by the causes that
 /// change all stiffnesses alike and how to tell them apart. With `std_error` NaN it gives no

@@ -57,7 +57,7 @@ class Boxes {
     this.left = percent ? 52 : 8;
     const room = printWidth || c.parentElement.clientWidth, n = this.index.length, g = this.g = c.getContext('2d');
     g.font = '12px system-ui';
-    this.widest = this.widest || 8 + Math.max(...this.index.map(i => g.measureText(this.plan.parameters[i].name).width));
+    this.widest = this.widest || 8 + Math.max(...this.index.map(i => g.measureText(called(this.plan.parameters[i])).width));
     const least = percent ? Math.max(room < 500 ? 38 : 50, this.widest / 2) : Math.max(84, this.widest);
     const fit = Math.max(1, Math.floor((room - this.left - 4) / least));
     const rows = printWidth ? Math.ceil(n / fit) : Math.min(kMostRows, Math.ceil(n / fit));
@@ -89,7 +89,7 @@ class Boxes {
   one(style, i, k, s, percent, [low, high], top, bottom, end, narrow) {
     const g = this.g, x = this.left + (k + 0.5) * this.step, from = x - this.step / 2;
     g.textAlign = 'center'; g.fillStyle = style.ink;
-    const name = this.plan.parameters[i].name, half = g.measureText(name).width / 2 + 2;
+    const name = called(this.plan.parameters[i]), half = g.measureText(name).width / 2 + 2;
     g.fillText(name, Math.max(half, Math.min(x, this.canvas.width / (devicePixelRatio || 1) - half)), end - (narrow && k % 2 === 0 ? 33 : 19));
     if (i === chosen) { g.fillStyle = style.rule; g.globalAlpha = 0.4; g.fillRect(from, top - 6, this.step, bottom - top + 12); g.globalAlpha = 1; }
     if (!s) return this.note(style, estimate ? whyNot(i) : '', x, end);
@@ -150,7 +150,7 @@ function valueTable() {
   const body = table.createTBody();
   plan.parameters.forEach((q, i) => {
     const row = body.insertRow(), v = known[i], has = boxes && boxes.count[i] > 0, f = findingOf(q.name);
-    cell(row, q.name).title = place(q);
+    cell(row, called(q) + (q.kind === 2 && called(q) !== q.name ? ', damping' : '')).title = `${q.name}: ${place(q)}`;
     cell(row, v ? withError(v.value, v.error, q.unit) : whyNot(i));
     cell(row, v ? fitShort(i) : '');
     cell(row, v ? (isNow(i) ? 'now' : when(v.us)) : '');

@@ -12,6 +12,7 @@ class Building {
     this.known = [];
     this.old = [];
     this.still = false;
+    this.shape = null;
     this.factor = 1;
     this.chosen = 0;
     this.onChoose = onChoose;
@@ -42,12 +43,7 @@ class Building {
     this.ofBase = i => i < plan.axes.length ? plan.axes[i].story === 0 : i < plan.axes.length + frames;
     this.measured = [...new Set(plan.axes.map(a => a.story))];
     this.floorAxis = [];
-    for (let s = 0; s <= plan.stories; s++) {
-      this.floorAxis.push({
-        x: plan.frames_x.map((_, f) => s === 0 ? -1 : this.axisOf(s, f)),
-        y: plan.frames_y.map((_, f) => s === 0 ? -1 : this.axisOf(s, n + f)),
-      });
-    }
+    for (let s = 0; s <= plan.stories; s++) this.floorAxis.push(Array.from({length: frames}, (_, f) => s === 0 ? -1 : this.axisOf(s, f)));
     this.begin();
     this.faces = this.makeFaces();
     canvas.addEventListener('pointerdown', e => { this.drag = [e.clientX, e.clientY]; this.moved = 0; canvas.setPointerCapture(e.pointerId); });
@@ -105,11 +101,20 @@ class Building {
     const d = s => { const a = this.axisOf(s, q.frames[0]); return s === 0 || a < 0 ? 0 : this.motion[a].d; };
     return d(q.last_story) - d(q.story - 1);
   }
+  // Displacement of floor `s` along the x-parallel frame `y` and the y-parallel frame `x` as drawn.
+  moved(x, y, s) {
+    const n = this.plan.frames_x.length, m = this.plan.frames_y.length;
+    const d = f => {
+      if (s === 0) return 0;
+      if (this.shape) return this.factor * this.shape[(s - 1) * (n + m) + f];
+      const i = this.floorAxis[s][f];
+      return i >= 0 ? this.factor * this.motion[i].d : 0;
+    };
+    return [n ? d(Math.min(y, n - 1)) : 0, m ? d(n + Math.min(x, m - 1)) : 0];
+  }
   at(x, y, s) {
-    const f = this.floorAxis[s], d = i => i >= 0 && i !== undefined ? this.motion[i].d : 0;
-    const g = this.factor;
-    const p = [this.xs[x] + g * d(f.x[Math.min(y, f.x.length - 1)]), this.ys[y] + g * d(f.y[Math.min(x, f.y.length - 1)]), this.zs[s]];
-    return this.project(p);
+    const [u, v] = this.moved(x, y, s);
+    return this.project([this.xs[x] + u, this.ys[y] + v, this.zs[s]]);
   }
   project([x, y, z]) {
     x -= this.xs.at(-1) / 2; y -= this.ys.at(-1) / 2; z -= this.zs.at(-1) / 2;
@@ -127,7 +132,8 @@ class Building {
     const across = Math.hypot(this.xs.at(-1), this.ys.at(-1)) * 1.25;
     this.zoom = Math.min(w / across, h / (this.zs.at(-1) * Math.cos(this.tilt) + across * Math.sin(this.tilt)) / 1.02);
     // Limits the enlargement, so that noise does not look like an earthquake.
-    this.factor = this.still || this.settling ? 0 : Math.min(kMaxExaggeration, this.extent * 0.13 / Math.max(this.largest, 1e-9));
+    const visible = this.extent * 0.13;
+    this.factor = this.shape ? visible : this.still || this.settling ? 0 : Math.min(kMaxExaggeration, visible / Math.max(this.largest, 1e-9));
     this.shapes = this.faces.map((f, k) => {
       const points = f.at.map(a => this.at(...a));
       return {k, i: f.i, points, depth: points.reduce((s, p) => s + p[2], 0)};
@@ -150,6 +156,7 @@ class Building {
       g.stroke();
     }
     this.levels(g, style);
+    this.labels(g, style);
     const dead = deadChannels();
     this.dots = [];
     for (const a of this.plan.axes) {
@@ -163,7 +170,7 @@ class Building {
     }
     g.font = '12px system-ui'; g.fillStyle = style.soft; g.textAlign = 'left';
     const rest = this.still || this.factor * this.largest < this.extent * 0.004;
-    g.fillText(this.still ? 'no motion to show' : rest ? 'hardly moves' : 'motion × ' + digits(this.factor, 2), 6, h - 8);
+    g.fillText(this.shape ? 'shape of a mode' : this.still ? 'no motion to show' : rest ? 'hardly moves' : 'motion × ' + digits(this.factor, 2), 6, h - 8);
     this.drifts(g, style);
     this.compass(g, style);
   }
@@ -178,11 +185,19 @@ class Building {
       g.stroke();
     }
   }
+  // Writes the labels of frames at their feet.
+  labels(g, style) {
+    g.font = '12px system-ui'; g.textAlign = 'center'; g.fillStyle = style.ink; g.strokeStyle = style.card; g.lineWidth = 4; g.lineJoin = 'round';
+    const n = this.plan.frames_x.length;
+    [...this.plan.frames_x, ...this.plan.frames_y].forEach((name, f) => {
+      const text = this.plan.labels[name], [x, y] = this.project(f < n ? [this.xs.at(-1) / 2, this.ys[f], 0] : [this.xs[f - n], this.ys.at(-1) / 2, 0]);
+      if (text) { g.strokeText(text, x, y + 4); g.fillText(text, x, y + 4); }
+    });
+  }
   // Position of a channel that is not on a frame.
   planPoint(a) {
-    const f = this.floorAxis[a.story], g = this.factor, d = i => a.story > 0 && i !== undefined && i >= 0 ? this.motion[i].d : 0;
-    const inside = (v, all) => Math.min(Math.max(v, 0), all.at(-1));
-    return this.project([inside(a.x_m, this.xs) + g * d(f.x[0]), inside(a.y_m, this.ys) + g * d(f.y[0]), this.zs[a.story]]);
+    const [u, v] = this.moved(0, 0, a.story), inside = (v, all) => Math.min(Math.max(v, 0), all.at(-1));
+    return this.project([inside(a.x_m, this.xs) + u, inside(a.y_m, this.ys) + v, this.zs[a.story]]);
   }
   dot(g, style, name, [x, y], dead) {
     g.beginPath(); g.arc(x, y, dead ? 7 : 3, 0, 7);
@@ -208,7 +223,7 @@ class Building {
       const at = [this.w - 6, Math.max(30, (low[1] + high[1]) / 2)], words = `story ${i + 1}: ${digits(100 * d.ratio, 3)} %`;
       if (taken.some(y => Math.abs(y - at[1]) < 14)) continue; // a tall building has no room for all
       taken.push(at[1]);
-      g.strokeStyle = style.card; g.lineWidth = 4;
+      g.strokeStyle = style.card; g.lineWidth = 4; g.lineJoin = 'round';
       g.strokeText(words, ...at); g.fillText(words, ...at);
     }
   }

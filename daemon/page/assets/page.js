@@ -77,11 +77,12 @@ function choose(i) {
   const q = plan.parameters[i], size = reference(i) || (known[i] ? known[i].value : 1);
   strip = engineering(size, q.unit);
   past.forEach(pushStiffness);
-  strips.k.name(`${q.name}, ${strip.unit}: value and one standard error`);
+  strips.k.name(`${called(q)}, ${strip.unit}: value and one standard error`);
   strips.drift.name(q.frames.length ? `${q.last_story > q.story ? 'drift over' : 'story drift in'} ${place(q)}, mm` : 'story drift: choose a frame');
 }
 function start(json) {
   plan = json;
+  for (const q of plan.parameters) q.last_story ??= q.story;
   document.title = `${plan.name || 'building'} - framewatch`;
   $('name').textContent = plan.name || 'framewatch';
   $('version').textContent = `framewatch ${plan.version}, configuration ${plan.config_sha256.slice(0, 12)}`;
@@ -101,6 +102,7 @@ function start(json) {
   strips.residual = new Strip(parent, 'residual over response', 'Part of the measured response that the identified model does not explain in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
   signals = new Signals();
   startSession();
+  startModes();
   choose(Math.max(0, plan.parameters.findIndex(q => q.name === layout.element)));
   const bar = document.createElement('canvas');
   bar.id = 'bar'; bar.width = 160; bar.height = 14; bar.style.width = '160px'; bar.setAttribute('aria-hidden', 'true');
@@ -123,7 +125,7 @@ function applyTheme() {
 // Forgets all that was shown, for another time of a recorded session.
 function forget() {
   known = []; rms = []; past.length = 0; alarms.clear();
-  estimate = boxes = fit = undefined; baseline = [];
+  estimate = boxes = fit = undefined; baseline = []; modes = {modes: []};
   told = {answers: [], findings: [], drift: []};
   lastRow = null; lastMotion = 0;
   building.begin(); building.largest = 1e-6; building.ratio = []; building.known = [];
@@ -249,6 +251,7 @@ function onAlarm(a) {
   alarms.set(a.id, a);
   showAlarms();
 }
+const placeName = name => { const q = plan.parameters.find(p => p.name === name); return q ? called(q) : name; };
 function showAlarms() {
   const list = [...alarms.values()].sort((x, y) => y.time_us - x.time_us);
   $('no-alarms').hidden = list.length > 0;
@@ -258,7 +261,7 @@ function showAlarms() {
   const body = table.createTBody();
   for (const x of list.slice(0, 100)) {
     const row = body.insertRow();
-    cell(row, when(x.since_us)); cell(row, x.place).title = x.message;
+    cell(row, when(x.since_us)); cell(row, placeName(x.place)).title = x.message;
     cell(row, x.told ? x.message : percent(x.value, x.error), x.told ? 'text' : ''); cell(row, x.told ? '' : percent(x.error, x.error).slice(1));
     cell(row, x.state === 0 ? `over, ${when(x.time_us)}` : !x.acknowledged ? 'open' : x.who ? `acknowledged by ${x.who}` : 'acknowledged').title = x.comment || '';
     const last = row.insertCell();
@@ -283,7 +286,7 @@ function onRefused(r) {
 function showRefusal(id) { if (ours.has(id) && refusals.has(id)) warn('Refused: ' + refusals.get(id)); }
 const handlers = {
   motion: onMotion, estimate: onEstimate, late: onLate, status: onStatus, alarm: onAlarm, session: onSession, gap: onGap, can: onCan, refused: onRefused,
-  boxes: b => { boxes = window.framewatch.boxes = b; }, fit: f => { fit = f; }, answers: onAnswers, last: onLast, baseline: b => { baseline = b.value; },
+  boxes: b => { boxes = window.framewatch.boxes = b; }, fit: f => { fit = f; }, answers: onAnswers, last: onLast, modes: onModes, baseline: b => { baseline = b.value; },
   dropped: d => { window.framewatch.dropped = d.events; }, alive: () => {},
 };
 // Events that do not belong to the time of a recorded session.
@@ -306,6 +309,7 @@ function draw() {
   frames.push(now);
   while (frames[0] < now - 1000) frames.shift();
   if (playback) playback.step(now);
+  building.shape = shapeAt(now);
   building.draw();
   for (const s of Object.values(strips)) s.draw();
   signals.draw(now);

@@ -11,7 +11,7 @@ class Signals {
     plan.parameters.forEach((q, i) => { if (q.kind === 0) all.push({id: 'd:' + q.name, group: 'drift', label: 'drift, ' + place(q), unit: 'mm', row: () => { const d = building.drift(i); return d === null ? null : 1e3 * d; }}); });
     plan.parameters.forEach((q, i) => {
       const unit = engineering(q.design || 1, q.unit);
-      all.push({id: 'p:' + q.name, group: 'stiffness, damping', label: q.name, unit: unit.unit, estimate: e => e.reason[i] === 0 ? e.value[i] * unit.factor : null});
+      all.push({id: 'p:' + q.name, group: 'stiffness, damping', label: called(q) === q.name ? q.name : `${q.name}: ${place(q)}`, unit: unit.unit, estimate: e => e.reason[i] === 0 ? e.value[i] * unit.factor : null});
     });
     all.push({id: 'residual', group: 'other', label: 'residual over response', unit: '', estimate: e => e.status === 0 ? null : e.residual});
     all.push({id: 'rms', group: 'other', label: 'rms of the base', unit: 'm/s²'}, {id: 'gap', group: 'other', label: 'gap', unit: ''});

@@ -48,14 +48,16 @@ function niceTicks(low, high, wanted) {
   for (let t = Math.ceil(low / step) * step; t <= high + step * 1e-9; t += step) out.push(+t.toPrecision(12));
   return out;
 }
+const frameName = f => [...plan.frames_x, ...plan.frames_y][f];
+const frameWords = name => plan.labels[name] || `frame ${name}`;
+// The name of a parameter in lists: its place if people labelled its frame.
+const called = q => q.frames.length === 1 && plan.labels[frameName(q.frames[0])] ? place(q) : q.name;
 // Where a parameter of the plan is.
 function place(q) {
-  const n = plan.frames_x.length;
-  const name = f => f < n ? plan.frames_x[f] : plan.frames_y[f - n];
   if (q.kind === 4) return `all frames along ${q.direction}`;
   if (q.frames.length) {
     const stories = q.last_story > q.story ? `stories ${q.story} to ${q.last_story}` : `story ${q.story}`;
-    return `${stories}, ` + (q.frames.length > 1 || q.frame < 0 ? `along ${q.direction}` : `frame ${name(q.frames[0])}`);
+    return `${stories}, ` + (q.frames.length > 1 ? `along ${q.direction}` : frameWords(frameName(q.frames[0])));
   }
   return `floor ${q.story}, panel ${q.name.split('_').pop()}`;
 }

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "daemon/monitor/event_report/report_words.h"
+#include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/service/health.h"
 
@@ -39,15 +40,17 @@ AnswerLine line_of(const Finding& f) {
   return {sentence(f.text), f.since_us, 0};
 }
 
-void say_who_knows(const std::vector<const Finding*>& findings, Answer& out) {
-  for (const Finding* f : findings)
-    if (f->acknowledged)
-      out.more.push_back({f->who.empty()
-                              ? fmt::format("{} is acknowledged.", f->place)
-                              : fmt::format("{} is acknowledged by {}.", f->place, f->who)});
+void say_who_knows(const std::vector<const Finding*>& findings, const Config& config, Answer& out) {
+  for (const Finding* f : findings) {
+    if (!f->acknowledged) continue;
+    std::string place = place_name(f->place, config);
+    if (place != f->place) place = capitalized(std::move(place));  // not the name of a channel
+    out.more.push_back({f->who.empty() ? fmt::format("{} is acknowledged.", place)
+                                       : fmt::format("{} is acknowledged by {}.", place, f->who)});
+  }
 }
 
-Answer is_changed(const Known& k) {
+Answer is_changed(const Known& k, const Config& config) {
   Answer out{"Is the building changed?", AnswerState::good};
   const std::vector<const Finding*> changes = of_kind(k, FindingKind::change);
   if (changes.size() == 1) {
@@ -63,7 +66,7 @@ Answer is_changed(const Known& k) {
     const bool open = std::any_of(changes.begin(), changes.end(),
                                   [](const Finding* f) { return !f->acknowledged; });
     out.state = open ? AnswerState::bad : AnswerState::look;
-    say_who_knows(changes, out);
+    say_who_knows(changes, config, out);
     return out;
   }
   if (k.with_baseline == 0) {
@@ -123,32 +126,37 @@ Answer is_believed(const Known& k, const Config& config) {
     const std::size_t all = config.pipeline.axes.size();
     out.more.push_back({fmt::format("{} of {} sensors are good.", all - dead.size(), all)});
   }
-  say_who_knows(doubts, out);
+  say_who_knows(doubts, config, out);
   return out;
 }
 
-std::string story_words(const Shake& shake, const estimator::Structure& s, int story) {
+std::string story_words(const Shake& shake, const Config& config, int story) {
+  const estimator::Structure& s = config.pipeline.structure;
   const estimator::PeakDrift peak = peak_drift(shake.peak, s, story);
   if (peak.frame < 0) return fmt::format("Story {}: not known", story);
-  return fmt::format("Story {}: {} ({:.2f} mm) in frame {}", story, drift_words(peak.ratio),
-                     1e3 * peak.ratio * s.story_height[static_cast<std::size_t>(story - 1)],
-                     s.frame_name(peak.frame));
+  return fmt::format(
+      "Story {}: {} ({:.2f} mm) in {}", story, drift_words(peak.ratio),
+      1e3 * peak.ratio * s.story_height[static_cast<std::size_t>(story - 1)],
+      frame_words(s.frame_name(peak.frame), frame_labels(config.pipeline.structure)));
 }
 
 /// Returns "Story 3: 0.42 % ± 0.01 % (12.60 mm) in frame y1", from the drifts where known.
-std::string drift_line(const Known& k, const estimator::Structure& s, int story) {
+std::string drift_line(const Known& k, const Config& config, int story) {
+  const estimator::Structure& s = config.pipeline.structure;
   const auto i = static_cast<std::size_t>(story - 1);
-  if (i >= k.drifts.size()) return story_words(*k.newest, s, story);
+  if (i >= k.drifts.size()) return story_words(*k.newest, config, story);
   const estimator::StoryDrift& d = k.drifts[i];
   if (!d.known()) return fmt::format("Story {}: not known", story);
-  return fmt::format("Story {}: {} ({:.2f} mm) in frame {}{}{}", story, drift_with_error(d),
-                     1e3 * d.ratio * s.story_height[i], s.frame_name(d.frame),
+  return fmt::format("Story {}: {} ({:.2f} mm) in {}{}{}", story, drift_with_error(d),
+                     1e3 * d.ratio * s.story_height[i],
+                     frame_words(s.frame_name(d.frame), frame_labels(config.pipeline.structure)),
                      d.measured ? "" : ", computed",
                      d.interrupted_at_peak() ? "; unknown in part of the strong motion" : "");
 }
 
 /// Returns a line for each story from the top; in a tall building, for those with most drift.
-void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
+void add_stories(const Known& k, const Config& config, Answer& out) {
+  const estimator::Structure& s = config.pipeline.structure;
   const Shake& shake = *k.newest;
   std::vector<int> stories(static_cast<std::size_t>(s.stories));
   std::iota(stories.rbegin(), stories.rend(), 1);
@@ -160,7 +168,7 @@ void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
     std::ranges::stable_sort(stories, std::greater<>(), swayed);
     stories.resize(kMaxSwayed);
   }
-  for (const int story : stories) out.more.push_back({drift_line(k, s, story)});
+  for (const int story : stories) out.more.push_back({drift_line(k, config, story)});
   if (s.stories > kAllStories)
     out.more.push_back({fmt::format("The other {} stories swayed less.", s.stories - kMaxSwayed)});
 }
@@ -234,7 +242,7 @@ Answer went_through(const Known& k, const Config& config) {
                   over ? "A shake" : "It is shaking", swayed, base_shear_words(shake.peak, s)),
       shake.from_us, over ? shake.to_us : 0};
   out.state = over ? AnswerState::good : AnswerState::look;
-  add_stories(k, s, out);
+  add_stories(k, config, out);
   out.more.push_back({accel_words(shake, config)});
   if (k.strongest != nullptr && largest_drift_ratio(k.strongest->peak, s) > kStronger * drift)
     out.more.push_back({fmt::format("The strongest so far: {} of a story's height, {}.",
@@ -280,7 +288,8 @@ Answer to_do(const Known& k) {
 }  // namespace
 
 std::array<Answer, 4> answers(const Known& known, const Config& config) {
-  return {is_changed(known), is_believed(known, config), went_through(known, config), to_do(known)};
+  return {is_changed(known, config), is_believed(known, config), went_through(known, config),
+          to_do(known)};
 }
 
 }  // namespace framewatch::daemon

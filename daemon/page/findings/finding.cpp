@@ -44,7 +44,7 @@ void describe_change(Finding& f, const Config& config) {
   f.advice = fmt::format(
       "Have a structural engineer inspect {} before normal use continues; then acknowledge "
       "the finding.",
-      at ? place_words(f.place) : f.place);
+      at ? place_words(f.place, frame_labels(config.pipeline.structure)) : f.place);
   const std::size_t at_recovery = f.text.find(kAfterStrongMotion);
   const std::string recovery =
       at_recovery == std::string::npos
@@ -55,7 +55,9 @@ void describe_change(Finding& f, const Config& config) {
     f.text = without_time(f.text) + recovery;  // its message says it
     return;
   }
-  f.text = change_sentence(table[*at], f.change_ratio, f.std_error) + "." + recovery;
+  f.text = change_sentence(table[*at], f.change_ratio, f.std_error,
+                           frame_labels(config.pipeline.structure)) +
+           "." + recovery;
 }
 
 void describe_strong_motion(Finding& f) {
@@ -94,6 +96,12 @@ constexpr int kIdentifies = 1;  // window_estimate_t::status
 
 }  // namespace
 
+std::string place_name(const std::string& place, const Config& config) {
+  return config.pipeline.parameters().find(place)
+             ? named_place(place, frame_labels(config.pipeline.structure))
+             : place;
+}
+
 Finding finding_of(const event_t& e, const Config& config) {
   Finding f;
   f.id = e.id;
@@ -110,7 +118,8 @@ Finding finding_of(const event_t& e, const Config& config) {
   } else if (e.kind == "gap") {
     f.kind = FindingKind::belief;
     f.text = fmt::format("The model does not fit: {}.", e.message);
-    f.advice = fmt::format("Find out what the model lacks near {}: framewatch diagnose.", e.place);
+    f.advice = fmt::format("Find out what the model lacks near {}: framewatch diagnose.",
+                           place_name(e.place, config));
   } else if (std::find(kOfChannels.begin(), kOfChannels.end(), e.kind) != kOfChannels.end() &&
              is_channel(config, e.place)) {
     describe_channel(f, e.kind);

@@ -33,6 +33,9 @@ struct Finding {
   std::string who;  ///< who acknowledged it; empty where unknown
 };
 
+/// Returns the words for an event's place: a parameter as named_place(), else the place itself.
+std::string place_name(const std::string& place, const Config& config);
+
 /// Describes an event that is raised or changed.
 Finding finding_of(const event_t& event, const Config& config);
 

@@ -12,6 +12,7 @@
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "daemon/page/view/page_json.h"
+#include "daemon/page/view/page_modes.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/message_check.h"
@@ -38,6 +39,7 @@ LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give
           intake_settings(config)),
       shaking_(config.pipeline),
       grouped_(config.pipeline.parameters().grouped()),
+      mode_errors_(config.pipeline.options.window_s),
       reports_(config.event_report ? config.event_report->directory : std::string()),
       ring_(kRing),
       history_(config.pipeline),
@@ -164,6 +166,7 @@ void LiveView::parameters(const parameter_table_t& table) {
   if (table.name == parameters_) return;
   parameters_ = table.name;
   watch_.reset();
+  new_values_ = true;
   // Estimates for another building's configuration are shown but not watched.
   same_parameters_ = parameters_ == parameter_names(config_);
   if (same_parameters_) watch_.emplace(config_, std::max<std::int64_t>(1, table.time_us));
@@ -176,7 +179,7 @@ void LiveView::estimate(int window, const window_estimate_t& found) {
     return;
   detect_changes(window, found);
   if (window != 0) return;
-  new_estimate_ = true;
+  new_estimate_ = new_values_ = true;
   estimate_at_ = flushes_;
   fit_.push(found);
   if (found.value.size() == parameters_.size() && same_parameters_)
@@ -268,6 +271,23 @@ void LiveView::push_if_new(const std::string& name, const std::string& json) {
   kept_[name] = json;
 }
 
+/// Pushes the modes of values that have come since the last call.
+void LiveView::show_modes() {
+  if (!std::exchange(new_values_, false)) return;
+  NewestValues newest;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    newest = history_.newest();
+  }
+  PageModes modes = parameters_.empty() || same_parameters_
+                        ? page_modes(config_, newest)
+                        : PageModes{.why = "the estimator has other parameters than this page"};
+  if (modes.why.empty()) mode_errors_.correct(modes);
+  const std::string json = modes_json(modes);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  push_if_new("modes", json);
+}
+
 void LiveView::flush() {
   ++flushes_;
   if (const std::string rows = motion_.take(); !rows.empty()) {
@@ -276,6 +296,7 @@ void LiveView::flush() {
     history_.motion(rows, flushes_, kFlushesPerSecond);
   }
   if (flushes_ % kFlushesPerSecond == 0) {
+    show_modes();
     const std::lock_guard<std::mutex> lock(mutex_);
     silent_s_ = seconds_since(motion_at_);
     (void)reports_.poll();
@@ -305,7 +326,7 @@ EventRing::Cursor LiveView::join() {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::string first = "retry: 1000\n\n";
   for (const char* name :
-       {"status", "baseline", "last", "boxes", "answers", "session", "can", "gap"})
+       {"status", "baseline", "last", "boxes", "modes", "answers", "session", "can", "gap"})
     if (const std::string& json = kept_[name]; !json.empty()) first += EventRing::text(name, json);
   for (const std::string& alarm : alarms_.all()) first += EventRing::text("alarm", alarm);
   return ring_.join(std::move(first));

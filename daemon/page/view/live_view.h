@@ -20,6 +20,7 @@
 #include "daemon/page/findings/finding.h"
 #include "daemon/page/findings/shaking.h"
 #include "daemon/page/view/event_ring.h"
+#include "daemon/page/view/mode_errors.h"
 #include "daemon/page/view/page_alarms.h"
 #include "daemon/page/view/page_commands.h"
 #include "daemon/page/view/page_history.h"
@@ -47,6 +48,8 @@ class LiveView {
   /// Takes one LCM message. Ignores other channels and malformed payloads. received_us: host clock.
   void message(const std::string& channel, const void* data, std::size_t size,
                const drivers::LcmSender& sender = {}, std::int64_t received_us = 0);
+  /// Takes a sample that did not come over LCM.
+  void sample(const estimator::AccelSample& sample);
   /// Pushes events for everything that has changed since the last call. Call it 20 times a second.
   void flush();
 
@@ -77,10 +80,10 @@ class LiveView {
   void detect_changes(int window, const window_estimate_t& estimate);
   /// Returns true for a change of stiffness that the page found, as it does without [watch].
   bool found_here(const event_t& event) const;
+  void show_modes();
   void keep(const std::string& name, std::string json);
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);
-  void sample(const estimator::AccelSample& sample);
   void instant(const estimator::SampleSet& instant);
   void push_if_new(const std::string& name, const std::string& json);
   /// Returns the baseline by parameter; empty while none is known.
@@ -100,12 +103,14 @@ class LiveView {
   std::optional<PageWatch> watch_;
   std::optional<window_estimate_t> newest_;
   bool new_estimate_ = false;  ///< since the last flush
+  bool new_values_ = true;     ///< since the modes were computed
   bool late_rows_ = false;     ///< rows of history_ got values since the last flush
   std::int64_t flushes_ = 0, motion_at_ = 0, estimate_at_ = 0;  ///< times in flushes
   Shaking shaking_;
   bool grouped_;                  ///< parameters describe groups of stories
   bool same_parameters_ = false;  ///< the estimator has the parameters of config_
   ModelFit fit_;
+  ModeErrors mode_errors_;
   NewestEventReport reports_;
   bool same_config_ = true;
 

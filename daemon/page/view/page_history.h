@@ -42,6 +42,13 @@ class MotionRows {
   std::size_t count_ = 0, left_out_ = 0;  ///< left_out_: ever
 };
 
+/// The newest value of every parameter with its standard error and the end of its window; 0: none
+/// has come. Empty before the first estimate.
+struct NewestValues {
+  std::vector<double> value, std_error;
+  std::vector<std::int64_t> end_us;
+};
+
 /// Empties the values and boxplots of an estimate and makes room for those of `parameters`.
 void clear_values(window_estimate_t& estimate, std::size_t parameters);
 
@@ -71,6 +78,7 @@ class PageHistory {
   std::string json(double silent_s) const;
   /// Returns the values that the newest window lacks, each with the end of its window.
   std::string last_json() const;
+  NewestValues newest() const { return {last_.value, last_.std_error, last_us_}; }
   /// Returns the last boxplot of each parameter; an empty text before the first.
   std::string boxes_json() const;
 

@@ -8,6 +8,8 @@
 
 #include "daemon/base/json.h"
 #include "daemon/monitor/estimates/estimate_table.h"
+#include "daemon/monitor/events/change_words.h"
+#include "daemon/tools/report/record_modes.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"
 #include "estimator/structure/parameter_table.h"
@@ -47,6 +49,24 @@ std::string boxes_json(const window_estimate_t& e) {
       e.boxplot_windows, json_list(e.q1, "{:.6g}"), json_list(e.median, "{:.6g}"),
       json_list(e.q3, "{:.6g}"), json_list(e.whisker_low, "{:.6g}"),
       json_list(e.whisker_high, "{:.6g}"), json_list(e.outliers), json_list(e.boxplot_count));
+}
+
+std::string modes_json(const PageModes& m) {
+  std::string modes;
+  for (const estimator::NaturalMode& mode : m.modes) {
+    const bool damping = m.why_no_damping.empty();
+    const Eigen::VectorXd real = mode.shape.real(), imaginary = mode.shape.imag();
+    modes += fmt::format(
+        R"({}{{"hz":{},"hz_error":{},"ratio":{},"ratio_error":{},"motion":"{}","re":{},"im":{}}})",
+        modes.empty() ? "" : ",", json_value_text(mode.frequency_hz),
+        json_value_text(mode.frequency_error_hz),
+        json_value_text(damping ? mode.damping_ratio : estimator::kNaN),
+        json_value_text(damping ? mode.damping_error : estimator::kNaN), motion_words(mode),
+        json_list(std::vector<double>(real.begin(), real.end()), "{:.3f}"),
+        json_list(std::vector<double>(imaginary.begin(), imaginary.end()), "{:.3f}"));
+  }
+  return fmt::format(R"({{"modes":[{}],"why":{},"why_no_damping":{},"oldest_us":{}}})", modes,
+                     json_line(m.why), json_line(m.why_no_damping), m.oldest_us);
 }
 
 std::string baseline_json(const std::vector<double>& baseline) {
@@ -159,17 +179,19 @@ std::string building_json(const Config& config, double rate_hz) {
       table.grouped() && config.pipeline.design.size() > 0
           ? group_parameters(s, table, {config.pipeline.design, config.pipeline.bending_nmprad})
           : config.pipeline.design;
-  for (int p = 0; p < table.size(); ++p)
+  for (int p = 0; p < table.size(); ++p) {
     parameters.push_back({{"name", table[p].name},
                           {"unit", table[p].unit},
                           {"kind", static_cast<int>(table[p].kind)},
                           {"story", table[p].story},
-                          {"last_story", table[p].last_story},
                           {"frames", table[p].frames},
-                          {"direction", letter(table[p].direction)},
-                          {"frame", table[p].frame},
-                          {"panel", table[p].panel},
                           {"design", design.size() > p ? Json(design[p]) : Json(nullptr)}});
+    if (table[p].last_story > table[p].story) parameters.back()["last_story"] = table[p].last_story;
+    if (table[p].panel >= 0)
+      parameters.back()["panel"] = table[p].panel;
+    else
+      parameters.back()["direction"] = letter(table[p].direction);
+  }
   Json axes = Json::array();
   for (const estimator::SensorAxis& a : config.pipeline.axes) {
     axes.push_back(
@@ -181,6 +203,7 @@ std::string building_json(const Config& config, double rate_hz) {
                     {"stories", s.stories},
                     {"frames_x", s.frames_x},
                     {"frames_y", s.frames_y},
+                    {"labels", frame_labels(s)},
                     {"span_x_m", s.span_x},
                     {"span_y_m", s.span_y},
                     {"story_height_m", s.story_height},

@@ -16,6 +16,7 @@
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/page/findings/answers.h"
+#include "daemon/page/view/page_modes.h"
 
 // Format messages as the JSON of the page's server-sent events (docs/dashboard.md), one line each.
 // Values that are not finite become null.
@@ -24,6 +25,8 @@ namespace framewatch::daemon {
 std::string estimate_json(const window_estimate_t& estimate, double min_snr);
 std::string model_fit_json(const model_fit_t& fit);
 std::string boxes_json(const window_estimate_t& estimate);
+/// Formats the modes; shapes by degree of freedom (Structure::dof), their largest entry is 1.
+std::string modes_json(const PageModes& modes);
 std::string baseline_json(const std::vector<double>& baseline);
 /// config_sha256: digest of the page's configuration, for "same_config".
 std::string status_json(const status_t& status, const std::string& config_sha256);

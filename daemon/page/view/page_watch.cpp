@@ -51,6 +51,7 @@ estimator::WindowEstimate decoded_estimate(int window, const window_estimate_t& 
 
 PageWatch::PageWatch(const Config& config, std::int64_t first_id)
     : table_(config.pipeline.parameters()),
+      labels_(frame_labels(config.pipeline.structure)),
       windows_s_(window_lengths_s(config.pipeline.options)),
       watch_(fresh_watch(table_, windows_s_)),
       first_id_(first_id) {}
@@ -81,7 +82,7 @@ std::vector<double> PageWatch::baseline() const {
 
 event_t PageWatch::event(const estimator::Alarm& alarm) const {
   const bool over = alarm.state == estimator::AlarmState::cleared;
-  event_t e = stiffness_event(alarm, table_);
+  event_t e = stiffness_event(alarm, table_, labels_);
   e.id = first_id_ + alarm.id - 1;
   e.severity = over ? severity::information : severity::alarm;
   return e;

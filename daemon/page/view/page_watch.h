@@ -9,6 +9,7 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
+#include "daemon/monitor/events/change_words.h"
 #include "estimator/watch/watch.h"
 
 namespace framewatch::daemon {
@@ -46,6 +47,7 @@ class PageWatch {
   event_t event(const estimator::Alarm& alarm) const;
 
   estimator::ParameterTable table_;
+  FrameLabels labels_;
   std::vector<double> windows_s_;
   estimator::Watch watch_;
   std::int64_t first_id_, last_alarm_ = 0;

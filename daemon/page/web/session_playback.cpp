@@ -96,24 +96,30 @@ std::unique_ptr<SessionPlayback> SessionPlayback::open(const Config& config,
     return refused(other_building("channels", theirs, ours));
 
   std::unique_ptr<SessionPlayback> out(new SessionPlayback(config));
-  if (!out->add(folder, name, kRawLog))
+  const bool has_lcm = out->add(folder, name, kRawLog), has_can = out->add_frames(folder, name);
+  if (!has_lcm && !has_can)
+    return refused(fmt::format("it has no {} or {} that can be read", kRawLog, kCanLog));
+  if (!has_lcm && config.can.empty())
     return refused(
-        fmt::format("it has no {} that can be read: the page shows samples of LCM only. "
-                    "Read its report",
-                    kRawLog));
-  if (!out->add(folder, name, kReplayedLog) && !out->add(folder, name, kEstimatesLog))
-    out->notes_.emplace_back("it has no estimates");
+        "its samples are CAN frames, and the page's configuration has no [[can]]. Open it with "
+        "framewatch serve and its own configuration");
+  if (!(has_lcm && out->logs_.front()->has) && !(has_can && out->can_->next() != nullptr))
+    return refused("it holds no samples");
+  const bool has_estimates =
+      out->add(folder, name, kReplayedLog) || out->add(folder, name, kEstimatesLog);
+  if (!has_estimates) out->notes_.emplace_back("it has no estimates");
   out->first_us_ = std::numeric_limits<std::int64_t>::max();
   for (const auto& log : out->logs_)
     if (log->has) out->first_us_ = std::min(out->first_us_, log->event.timestamp_us);
-  if (!out->logs_.front()->has) return refused("it holds no samples");
+  if (has_can && out->can_->next() != nullptr)
+    out->first_us_ = std::min(out->first_us_, out->can_->next()->stamp_us);
   out->flush_us_ = out->first_us_ + kFlushEvery_us;
 
   // The table of parameters stands near the start of the estimates.
-  if (out->logs_.size() > 1) {
+  if (has_estimates) {
     drivers::LcmLogReader reader;
     drivers::LogEvent event;
-    if (reader.open(fmt::format("/proc/self/fd/{}", out->logs_[1]->file.get())))
+    if (reader.open(fmt::format("/proc/self/fd/{}", out->logs_.back()->file.get())))
       for (int i = 0; i < kTableWithin && reader.next(event) == drivers::LogRead::event; ++i) {
         const auto table = event.channel == config.lcm.prefix + "PARAMETERS"
                                ? drivers::decoded<parameter_table_t>(event.data)
@@ -147,6 +153,15 @@ bool SessionPlayback::add(const std::string& folder, const std::string& session,
   return true;
 }
 
+bool SessionPlayback::add_frames(const std::string& folder, const std::string& session) {
+  drivers::Descriptor file = open_served_file(folder, {session, kCanLog});
+  if (file.get() < 0) return false;
+  can_ = std::make_unique<CanPlayback>(
+      config_.can, std::move(file), kCanLog,
+      [this](const estimator::AccelSample& sample) { view_.sample(sample); });
+  return true;
+}
+
 /// Reads the next event of a log past any damage.
 void SessionPlayback::next(Log& log) {
   for (;;) {
@@ -164,25 +179,34 @@ void SessionPlayback::next(Log& log) {
   }
 }
 
-/// Passes the next message on, or flushes when its time has come.
+/// Passes the next message or frame on, or flushes when its time has come.
 void SessionPlayback::advance() {
   Log* first = nullptr;
   for (const auto& log : logs_)
     if (log->has && (first == nullptr || log->event.timestamp_us < first->event.timestamp_us))
       first = log.get();
-  if (first == nullptr || first->event.timestamp_us >= flush_us_) {
+  const drivers::CanFrame* frame = can_ ? can_->next() : nullptr;
+  const bool from_can =
+      frame != nullptr && (first == nullptr || frame->stamp_us < first->event.timestamp_us);
+  const std::int64_t next_us = from_can ? frame->stamp_us
+                               : first  ? first->event.timestamp_us
+                                        : std::numeric_limits<std::int64_t>::max();
+  if (next_us >= flush_us_) {
     flush();
-    if (first == nullptr) {
+    if (first == nullptr && !from_can) {
+      if (can_)
+        for (std::string& note : can_->notes()) notes_.push_back(std::move(note));
       text_ += EventRing::text("end", json_line({{"notes", notes_}}));
       ended_ = true;
       return;
     }
     const std::int64_t skipped_us =
-        std::max<std::int64_t>(0, first->event.timestamp_us - flush_us_ - kLongestPause_us);
+        std::max<std::int64_t>(0, next_us - flush_us_ - kLongestPause_us);
     first_us_ += skipped_us;
     flush_us_ += kFlushEvery_us + skipped_us;
     return;
   }
+  if (from_can) return can_->advance();
   view_.message(first->event.channel, first->event.data.data(), first->event.data.size(), {},
                 first->event.timestamp_us);
   next(*first);

@@ -9,6 +9,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/page/view/live_view.h"
+#include "daemon/page/web/can_playback.h"
 #include "drivers/files/descriptor.h"
 #include "drivers/lcm/lcm_log.h"
 
@@ -41,6 +42,8 @@ class SessionPlayback {
   explicit SessionPlayback(const Config& config);
   [[nodiscard]] bool add(const std::string& folder, const std::string& session,
                          const std::string& file);
+  /// Returns false if the session has no log of CAN frames.
+  [[nodiscard]] bool add_frames(const std::string& folder, const std::string& session);
   void next(Log& log);
   void advance();
   void flush();
@@ -50,6 +53,7 @@ class SessionPlayback {
   LiveView view_;
   EventRing::Cursor cursor_;
   std::vector<std::unique_ptr<Log>> logs_;
+  std::unique_ptr<CanPlayback> can_;  ///< null: the session has no CAN frames
   std::vector<std::string> notes_;
   std::int64_t first_us_ = 0, flush_us_ = 0;  ///< host clock
   std::string text_;                          ///< not read yet, from offset_ on

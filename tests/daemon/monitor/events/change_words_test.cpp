@@ -29,16 +29,19 @@ TEST(ChangeWords, ALossOfAGroupMeansALargerLossOfAStory) {
 }
 
 TEST(ChangeWords, AGroupsLossGivesThePossibleLossOfOneStory) {
-  EXPECT_EQ(change_sentence(frames(5, 8), -0.02, 0.001),
+  EXPECT_EQ(change_sentence(frames(5, 8), -0.02, 0.001, {}),
             "stories 5 to 8, along x (kx_5to8) have lost 2.0 % of their stiffness, give or take "
             "0.1 %: 20 times its uncertainty; one of stories 5 to 8 may have lost up to 8 %");
-  EXPECT_EQ(change_sentence(frames(1, 1), -0.148, 0.0041),
+  EXPECT_EQ(change_sentence(frames(1, 1), -0.148, 0.0041, {}),
             "story 1, frame y1 (kx_1_y1) has lost 14.8 % of its stiffness, give or take 0.4 %: 36 "
             "times its uncertainty");
+  EXPECT_EQ(change_sentence(frames(1, 1), -0.148, 0.0041, {{"y1", "south wall"}}),
+            "story 1, south wall (kx_1_y1) has lost 14.8 % of its stiffness, give or take 0.4 %: "
+            "36 times its uncertainty");
 }
 
 TEST(ChangeWords, WithoutANumberItIsChanging) {
-  EXPECT_EQ(changing_sentence(frames(1, 1), -0.1),
+  EXPECT_EQ(changing_sentence(frames(1, 1), -0.1, {}),
             "story 1, frame y1 (kx_1_y1) is changing: it loses stiffness, how much is not known "
             "yet");
   const std::string all = common_change_sentence(-0.05, std::numeric_limits<double>::quiet_NaN());
@@ -73,6 +76,9 @@ TEST(ChangeWords, FramesHaveTheLabelsThatPeopleGave) {
   EXPECT_EQ(element_words("cx_2to4_y1", labels), "south wall (y1) of stories 2 to 4");
   EXPECT_EQ(place_words("ky_1_x1", labels), "story 1, frame x1") << "no label was given";
   EXPECT_EQ(place_words("kx_1to5_y1+y2", labels), "stories 1 to 5, frames y1+y2");
+  EXPECT_EQ(named_place("kx_1_y2", labels), "story 1, north wall (kx_1_y2)");
+  EXPECT_EQ(frame_words("y2", labels), "north wall");
+  EXPECT_EQ(frame_words("x1", labels), "frame x1");
 }
 
 TEST(PlaceWords, DescribeTheElementOfAParameter) {

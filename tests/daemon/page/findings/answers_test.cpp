@@ -102,9 +102,19 @@ TEST_F(AnswersTest, AnAcknowledgedEventStaysButAsksForNothing) {
   known_.findings.back().acknowledged = true;
   known_.findings.back().who = "Ana";
   EXPECT_EQ(said(0).substr(0, 4), "Yes.");
-  EXPECT_NE(said(0).find("kx_1_y2 is acknowledged by Ana."), std::string::npos);
+  EXPECT_NE(said(0).find("Story 1, frame y2 (kx_1_y2) is acknowledged by Ana."), std::string::npos);
   EXPECT_EQ(answer(0).state, AnswerState::look);
   EXPECT_EQ(said(3), "Nothing.");
+}
+
+TEST_F(AnswersTest, FramesHaveTheLabelsThatPeopleGave) {
+  config_.pipeline.structure.labels_x = {"south wall", "north wall"};
+  find(event_of("stiffness_change", "kx_1_y2", severity::alarm), -14.83, 0.41);
+  known_.findings.back().acknowledged = true;
+  EXPECT_EQ(said(0).find("Yes. Story 1, north wall (kx_1_y2) has lost 14.8 %"), 0u) << said(0);
+  EXPECT_NE(said(0).find("Story 1, north wall (kx_1_y2) is acknowledged."), std::string::npos);
+  known_.findings.back().acknowledged = false;
+  EXPECT_NE(said(3).find("structural engineer inspect story 1, north wall"), std::string::npos);
 }
 
 /// A gap alarm used to take the place of an unacknowledged damage.

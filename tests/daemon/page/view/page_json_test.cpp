@@ -29,7 +29,14 @@ TEST(BuildingJson, NamesTheStoriesOfGroups) {
 TEST(BuildingJson, HasNoGroupsIfEveryStoryIsMeasured) {
   const auto building = building_of(demo_scenario());
   EXPECT_EQ(building["grouped"], false);
-  for (const auto& p : building["parameters"]) EXPECT_EQ(p["story"], p["last_story"]);
+  for (const auto& p : building["parameters"]) EXPECT_FALSE(p.contains("last_story"));
+}
+
+TEST(BuildingJson, HasTheLabelsOfFrames) {
+  Scenario scenario = demo_scenario();
+  EXPECT_EQ(building_of(scenario)["labels"], nlohmann::json::object());
+  scenario.config.pipeline.structure.labels_x = {"south wall", "north wall"};
+  EXPECT_EQ(building_of(scenario)["labels"]["y2"], "north wall");
 }
 
 TEST(BuildingJson, PlacesChannelsThatRideOnNoFrame) {

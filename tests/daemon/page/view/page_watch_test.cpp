@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/page/findings/finding.h"
 #include "estimator/numeric/nan.h"
@@ -103,7 +104,8 @@ TEST_F(PageWatchTest, NamesTheFrameThatLostStiffnessUntilItReturns) {
     EXPECT_EQ(e->message.substr(0, found.size() + 8), found + ", since ");
   }
   EXPECT_EQ(events.back().state, event_state::cleared);
-  EXPECT_EQ(events.back().message, table()[kDropped].name + " is at its baseline again");
+  EXPECT_EQ(events.back().message,
+            named_place(table()[kDropped].name, {}) + " is at its baseline again");
   EXPECT_NEAR(newest_value, -kDrop_ratio, 0.03);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,11 @@
 
 #include "daemon/page/view/page_watch.h"
 #include "daemon/tools/report/session_file.h"
+#include "daemon/tools/session/recorder.h"
+#include "daemon/tools/session/session_finish.h"
 #include "drivers/files/encoded.h"
 #include "tests/daemon/page/web/served.h"
+#include "tests/support/can_traffic.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {
@@ -24,6 +28,7 @@ namespace session_playback_test {
 
 constexpr std::int64_t kHost_us = 1'700'000'000'000'000, kSecond = 1'000'000;
 constexpr int kSeconds = 6;
+constexpr double kCanStep_mps2 = 0.0006;  // half a count of the frames
 
 /// One event of the played text.
 struct Played {
@@ -195,9 +200,11 @@ TEST(SessionPlayback, RefusesAnEmptySession) {
   r.write();
   EXPECT_EQ(r.refusal(), "it holds no samples");
   std::filesystem::remove(r.folder + "/a/raw.lcmlog");
-  EXPECT_NE(r.refusal().find("it has no raw.lcmlog that can be read"), std::string::npos);
+  EXPECT_NE(r.refusal().find("it has no raw.lcmlog or raw.can.log that can be read"),
+            std::string::npos);
   test::write_file(r.folder + "/a/raw.lcmlog", "this is no log");
-  EXPECT_NE(r.refusal().find("it has no raw.lcmlog that can be read"), std::string::npos);
+  EXPECT_NE(r.refusal().find("it has no raw.lcmlog or raw.can.log that can be read"),
+            std::string::npos);
 }
 
 TEST(SessionPlayback, RefusesAnotherBuilding) {
@@ -244,7 +251,87 @@ TEST(SessionPlayback, RefusesWhatIsNoFinishedSessionOfTheFolder) {
   EXPECT_EQ(r.refusal("c"), "there is no such session");
   fs::rename(r.folder + "/a/raw.lcmlog", r.folder + "/elsewhere");
   fs::create_symlink("../elsewhere", r.folder + "/a/raw.lcmlog");
-  EXPECT_NE(r.refusal().find("it has no raw.lcmlog that can be read"), std::string::npos);
+  EXPECT_NE(r.refusal().find("it has no raw.lcmlog or raw.can.log that can be read"),
+            std::string::npos);
+}
+
+/// A session of 8 s of the CAN tower, whose channels move as can_wave(), recorded and finished.
+struct RecordedCan {
+  RecordedCan() {
+    Recorder recorder(config, folder,
+                      [&](const std::string& ended) { session = ended.substr(folder.size() + 1); });
+    EXPECT_EQ(recorder.begin({"CAN", "", ""}, test::kTrafficStart_us), "");
+    for (const drivers::BusFrame& f : test::can_traffic(config, 100 * kSeconds)) {
+      recorder.frame(f.bus, f.frame);
+      recorder.tick(f.frame.stamp_us);
+    }
+    const std::int64_t end_us = test::kTrafficStart_us + kSeconds * kSecond;
+    EXPECT_EQ(recorder.stop("command", end_us), "");
+    recorder.tick(end_us + kSecond);
+    FinishArguments finish;
+    finish.config = config.path;
+    finish.folder = folder + "/" + session;
+    finish.report = false;
+    finish.quiet = true;
+    EXPECT_EQ(finish_session(finish), 0);
+  }
+  std::unique_ptr<SessionPlayback> open(const Config& of) {
+    return SessionPlayback::open(of, folder, session, why);
+  }
+
+  static constexpr int kSeconds = 8;
+  const test::TemporaryDirectory directory;
+  const std::string folder = directory.path("sessions");
+  const Config config = test::can_example("tower");
+  std::string session, why;
+};
+
+TEST(SessionPlayback, PlaysFramesOfCan) {
+  RecordedCan r;
+  const auto playback = r.open(r.config);
+  ASSERT_TRUE(playback) << r.why;
+  int rows = 0, estimates = 0;
+  for (const Played& e : played(*playback)) {
+    if (e.name == "end") EXPECT_TRUE(e.data["notes"].empty()) << e.data;
+    estimates += e.name == "estimate";
+    if (e.name != "motion") continue;
+    for (const auto& row : e.data["rows"]) {
+      const double t_s =
+          1e-6 * static_cast<double>(e.data["first_us"].get<std::int64_t>() +
+                                     row[0].get<std::int64_t>() - test::kTrafficStart_us);
+      for (std::size_t a = 0; a < r.config.pipeline.axes.size(); ++a)
+        EXPECT_NEAR(row[1][a].get<double>(), test::can_wave(a, 0.01 * std::round(100 * t_s)),
+                    kCanStep_mps2);
+      EXPECT_NEAR(t_s, e.at_s, 1);
+      ++rows;
+    }
+  }
+  EXPECT_GT(rows, 100 * (RecordedCan::kSeconds - 1));
+  EXPECT_GT(estimates, 0);
+}
+
+TEST(SessionPlayback, NamesWhereALogOfFramesIsDamagedOrCutOff) {
+  RecordedCan r;
+  const std::string log = r.folder + "/" + r.session + "/raw.can.log";
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) - 3);
+  std::fstream(log, std::ios::in | std::ios::out).put('?');
+  const std::vector<Played> events = played(*r.open(r.config));
+  const auto& notes = events.back().data["notes"];
+  ASSERT_EQ(notes.size(), 2u) << notes;
+  EXPECT_EQ(notes[0].get<std::string>().find("raw.can.log:1: the line does not begin with"), 0u)
+      << notes;
+  EXPECT_NE(notes[1].get<std::string>().find("cut off: left out"), std::string::npos) << notes;
+}
+
+TEST(SessionPlayback, RefusesFramesThatItCannotRead) {
+  RecordedCan r;
+  Config without = r.config;
+  without.can = {};
+  EXPECT_FALSE(r.open(without));
+  EXPECT_NE(r.why.find("the page's configuration has no [[can]]"), std::string::npos) << r.why;
+  test::write_file(r.folder + "/" + r.session + "/raw.can.log", "");
+  EXPECT_FALSE(r.open(r.config));
+  EXPECT_EQ(r.why, "it holds no samples");
 }
 
 class PlaybackServed : public test::Served {
