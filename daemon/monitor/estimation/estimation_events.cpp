@@ -2,7 +2,6 @@
 #include "daemon/monitor/estimation/estimation_events.h"
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <fmt/core.h>
@@ -11,6 +10,7 @@
 #include "daemon/config/learned_files.h"
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
+#include "daemon/monitor/events/warning_event.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
@@ -126,16 +126,10 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
       worst < config.pipeline.axes.size() ? config.pipeline.axes[worst].name : "";
   const estimator::ParameterTable table = config.pipeline.parameters();
   const bool named = news.parameter >= 0 && news.parameter < table.elements();
-  event_t m{};
-  m.time_us = to_microseconds(news.found);
-  m.since_us = to_microseconds(news.since);
-  m.id = news.id;
-  m.state = static_cast<std::int32_t>(news.state);
-  m.severity = raised ? severity::warning : severity::information;
-  m.kind = "gap";
-  m.place = named ? table[news.parameter].name : channel;
+  event_t m = warning_event(
+      {"gap", named ? table[news.parameter].name : channel, news.id, to_microseconds(news.since)},
+      static_cast<std::int32_t>(news.state), to_microseconds(news.found));
   m.value = 100 * news.excess;
-  m.std_error = std::numeric_limits<double>::quiet_NaN();
   m.unit = "%";
   m.segment = segment_name(config, news.id);
   m.message =
@@ -154,16 +148,10 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
 event_t doubt_event(const estimator::ChannelNews& news,
                     const std::vector<estimator::SensorAxis>& axes) {
   const bool over = news.state == estimator::AlarmState::cleared;
-  event_t m{};
-  m.time_us = to_microseconds(news.found);
-  m.since_us = to_microseconds(news.since);
-  m.id = kFirstDoubtId + news.axis;
-  m.state = static_cast<std::int32_t>(news.state);
-  m.severity = over ? severity::information : severity::warning;
-  m.kind = "channel_doubted";
-  m.place = axes[static_cast<std::size_t>(news.axis)].name;
+  event_t m = warning_event({"channel_doubted", axes[static_cast<std::size_t>(news.axis)].name,
+                             kFirstDoubtId + news.axis, to_microseconds(news.since)},
+                            static_cast<std::int32_t>(news.state), to_microseconds(news.found));
   m.value = 100 * news.departure;
-  m.std_error = std::numeric_limits<double>::quiet_NaN();
   m.unit = "%";
   m.message = m.place + (over ? " reads the building's motion again"
                               : fmt::format(" {}. It differs by {} from the building's motion, "

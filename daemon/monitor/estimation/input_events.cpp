@@ -11,6 +11,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/event_messages.h"
+#include "daemon/monitor/events/warning_event.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -250,24 +251,12 @@ std::vector<event_t> ChannelEvents::update(const std::vector<estimator::AxisCoun
   return out;
 }
 
-/// Returns an event of a channel without its id, kind, value and message.
-event_t ChannelEvents::news_of(std::size_t axis, bool raised, std::int64_t since_us,
-                               std::int64_t time_us) const {
-  event_t m{};
-  m.time_us = time_us;
-  m.since_us = since_us;
-  m.state = raised ? event_state::raised : event_state::cleared;
-  m.severity = raised ? severity::warning : severity::information;
-  m.place = axes_[axis].name;
-  m.std_error = estimator::kNaN;
-  return m;
-}
-
 event_t ChannelEvents::event_of(std::size_t axis, const Trouble& trouble, bool silent,
                                 std::int64_t time_us) const {
-  event_t m = news_of(axis, trouble.raised, trouble.since_us, time_us);
-  m.id = kFirstChannelId + 2 * static_cast<std::int64_t>(axis) + (silent ? 0 : 1);
-  m.kind = silent ? "channel_silent" : "channel_stuck";
+  event_t m = warning_event(
+      {silent ? "channel_silent" : "channel_stuck", axes_[axis].name,
+       kFirstChannelId + 2 * static_cast<std::int64_t>(axis) + (silent ? 0 : 1), trouble.since_us},
+      raised_or_cleared(trouble.raised), time_us);
   m.value = 1e-6 * static_cast<double>(time_us - trouble.since_us);
   m.unit = "s";
   m.message = silent ? silent_message(m.place, trouble.raised, channels_[axis].received > 0)
@@ -278,9 +267,9 @@ event_t ChannelEvents::event_of(std::size_t axis, const Trouble& trouble, bool s
 event_t ChannelEvents::absurd_event(std::size_t axis, std::int64_t time_us) const {
   const Absurd& absurd = absurd_[axis];
   const std::int64_t count = absurd.seen - absurd.before;
-  event_t m = news_of(axis, absurd.raised, absurd.since_us, time_us);
-  m.id = kFirstAbsurdId + static_cast<std::int64_t>(axis);
-  m.kind = "absurd_samples";
+  event_t m = warning_event({"absurd_samples", axes_[axis].name,
+                             kFirstAbsurdId + static_cast<std::int64_t>(axis), absurd.since_us},
+                            raised_or_cleared(absurd.raised), time_us);
   m.value = static_cast<double>(count);
   m.unit = "samples";
   m.message = absurd.raised ? fmt::format(

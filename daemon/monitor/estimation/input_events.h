@@ -121,7 +121,6 @@ class ChannelEvents {
   static bool turns(Trouble& trouble, bool speaks_for, bool speaks_against, int raise_s,
                     int clear_s);
   static bool turns(Absurd& absurd, std::int64_t seen, std::int64_t time_us);
-  event_t news_of(std::size_t axis, bool raised, std::int64_t since_us, std::int64_t time_us) const;
   event_t event_of(std::size_t axis, const Trouble& trouble, bool silent,
                    std::int64_t time_us) const;
   event_t absurd_event(std::size_t axis, std::int64_t time_us) const;

@@ -12,7 +12,7 @@
 #include "daemon/base/usual_time.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "estimator/numeric/nan.h"
+#include "daemon/monitor/events/warning_event.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -33,20 +33,6 @@ std::string length(double seconds) {
   if (s < 300) return fmt::format("{:.1f} s", s);
   if (s < 172'800) return fmt::format("{:.1f} h", s / 3600);
   return fmt::format("{:.0f} days", s / 86'400);
-}
-
-event_t stamp_event(const char* kind, std::string place, bool raised, std::int64_t id,
-                    std::int64_t since_us, std::int64_t time_us) {
-  event_t m{};
-  m.time_us = time_us;
-  m.since_us = since_us;
-  m.id = id;
-  m.state = raised ? event_state::raised : event_state::cleared;
-  m.severity = raised ? severity::warning : severity::information;
-  m.kind = kind;
-  m.place = std::move(place);
-  m.std_error = estimator::kNaN;
-  return m;
 }
 
 }  // namespace
@@ -97,9 +83,9 @@ std::optional<event_t> StampEvents::of_rate(std::size_t axis, std::int64_t lost,
   c.spans = 0;
   c.off_rate = few || many;
   if (c.off_rate) c.off_since_us = time_us - kSpans * kSpan_s * kSecond_us;
-  event_t m =
-      stamp_event("channel_rate", axes_[axis].name, c.off_rate,
-                  kFirstStampId + 2 * static_cast<std::int64_t>(axis), c.off_since_us, time_us);
+  event_t m = warning_event({"channel_rate", axes_[axis].name,
+                             kFirstStampId + 2 * static_cast<std::int64_t>(axis), c.off_since_us},
+                            raised_or_cleared(c.off_rate), time_us);
   m.value = samples / span_s;
   m.unit = "Hz";
   m.message = c.off_rate
@@ -125,9 +111,10 @@ std::optional<event_t> StampEvents::of_clock(std::size_t axis, double median_us,
   c.seconds = 0;
   c.apart = apart;
   if (apart) c.apart_since_us = time_us - kApart_s * kSecond_us;
-  event_t m = stamp_event("channel_clock", axes_[axis].name, apart,
-                          kFirstStampId + 2 * static_cast<std::int64_t>(axis) + 1, c.apart_since_us,
-                          time_us);
+  event_t m =
+      warning_event({"channel_clock", axes_[axis].name,
+                     kFirstStampId + 2 * static_cast<std::int64_t>(axis) + 1, c.apart_since_us},
+                    raised_or_cleared(apart), time_us);
   m.value = offset_s;
   m.unit = "s";
   m.message = late ? fmt::format(
@@ -159,8 +146,9 @@ std::optional<event_t> ClockEvents::update(std::int64_t time_us, std::int64_t ar
   if (begins) since_us_ = time_us;
   off_s_ += stepped ? step_s : 0;
   raised_ = stepped && std::abs(off_s_) > kLargest_s;
-  event_t m = stamp_event("clock_step", "all channels", raised_, kClockId, since_us_, time_us);
-  if (raised_ && !begins) m.state = event_state::changed;
+  event_t m = warning_event({"clock_step", "all channels", kClockId, since_us_},
+                            raised_ && !begins ? event_state::changed : raised_or_cleared(raised_),
+                            time_us);
   m.value = off_s_;
   m.unit = "s";
   m.message = raised_ ? fmt::format(
