@@ -38,7 +38,7 @@ void add_page_options(CLI::App* command, std::string& about, PictureFiles& figur
              "its\npoints as CSV");
   command
       ->add_option("--format", figures.formats,
-                   "formats of these files: svg, pdf, png (needs the package librsvg2-bin)")
+                   "formats of these files: svg, pdf, png (needs the package librsvg2-2)")
       ->delimiter(',')
       ->check(CLI::IsMember({"svg", "pdf", "png"}))
       ->default_str("svg");
