@@ -17,7 +17,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kNeverSeen = 1;  // loss of the whole stiffness
-constexpr double kRoofGain = 2;   // factor by which a channel on the roof must reduce an error
 
 struct Weakest {
   double loss = 0;
@@ -107,11 +106,10 @@ void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
   }
 }
 
-/// Warns of a roof without a channel if one there would make an error much smaller.
+/// Warns of a roof without a channel, with the errors that one there would change.
 void free_top(const Config& config, const LayoutOutlook& outlook, std::vector<std::string>& out) {
   if (!outlook.top) return;
   const TopErrors &now = *outlook.top, &then = outlook.top_with_roof;
-  if (now.stiffness < kRoofGain * then.stiffness && now.damping < kRoofGain * then.damping) return;
   const auto within = [](double error) {
     return error < 1 ? fmt::format("{:.2g} %", 100 * error) : std::string("unknown");
   };
