@@ -24,6 +24,9 @@ struct HistoryArguments {
   std::vector<std::string> channels;    ///< patterns for raw samples; empty: all
   std::string network = "XX", station = "FRAME";  ///< for miniSEED
   bool events = false;
+  bool losses = false;
+  std::string report;   ///< page about months or years
+  std::string weather;  ///< table for --losses and --report, see read_weather(); empty: none
   bool json = false;
 };
 

@@ -18,8 +18,7 @@ namespace framewatch::estimator {
 /// The spread of a window's blocks says little when one of them carries nearly all information, as
 /// an absurd sample does: the solution fits that block, and its residual is small. So the window is
 /// solved once more without the consecutive blocks, a fifth of its length, that have the largest
-/// share of an unknown's information. A fifth of 5 s is longer than the row filters ring.
-/// docs/equations.md, influential part.
+/// share of an unknown's information. docs/equations.md, influential part.
 ///
 /// A pass begins when a block closes and takes steps(), spread over the instants of the next block.
 class InfluentialPart {

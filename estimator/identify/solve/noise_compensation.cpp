@@ -102,13 +102,9 @@ void ModelMisfit::learn(std::size_t floor, double expected) {
   if (!(force_[floor] > 0)) return;
   least_[floor] = std::max(expected, 0.0) / force_[floor];
   const double ratio = excess_[floor] / force_[floor];
-  if (learned_[floor] == kLearned && ratio > usual_limit(floor)) return;
+  if (learned_[floor] == kLearned && ratio > limit(floor, usual_[floor])) return;
   learned_[floor] = std::min(learned_[floor] + 1, kLearned);
   usual_[floor] += (ratio - usual_[floor]) / learned_[floor];
-}
-
-double ModelMisfit::usual_limit(std::size_t floor) const {
-  return kJump * usual_[floor] + kNoiseDoubt * least_[floor];
 }
 
 /// Returns the lowest floor whose equations hold the unknown. The first unknowns of a story are
@@ -136,11 +132,12 @@ double ModelMisfit::error(int unknown, double variance) const {
   return error_of(excess, variance);
 }
 
-double ModelMisfit::new_error(int unknown, double variance) const {
+double ModelMisfit::new_error(int unknown, double variance, const ModelMisfit& usual) const {
   double excess = 0;
   for (int f = lowest_floor(unknown); f <= unknown / layout_.own(); ++f) {
     const auto floor = static_cast<std::size_t>(f);
-    if (learned_[floor] == kLearned && excess_[floor] > usual_limit(floor) * force_[floor])
+    if (usual.learned_[floor] == kLearned &&
+        excess_[floor] > limit(floor, usual.usual_[floor]) * force_[floor])
       excess += excess_[floor];
   }
   return error_of(excess, variance);

@@ -104,7 +104,8 @@ class ModelMisfit {
   /// Returns the part of that error which is new: from what is left beyond kJump times the usual.
   /// The model of a building is as wrong as ever in every window, so that a change is seen beside
   /// it. A failing sensor or a change within the window leaves more.
-  double new_error(int unknown, double variance) const;
+  /// usual: has learned what is usual, this object or that of another window.
+  double new_error(int unknown, double variance, const ModelMisfit& usual) const;
 
   void archive(auto& a) {
     a.finite(excess_, force_);
@@ -119,12 +120,14 @@ class ModelMisfit {
   static constexpr double kJump = 4;
   /// Part of the noise's energy by which it may exceed what is expected: a quarter of its level.
   static constexpr double kNoiseDoubt = 0.5;
-  /// Windows in the mean of what is usual: a minute of blocks.
-  static constexpr int kLearned = 240;
+  /// Windows in the mean of what is usual: 20 s of blocks, four windows that do not overlap.
+  static constexpr int kLearned = 80;
   int lowest_floor(int unknown) const;
   void learn(std::size_t floor, double expected);
-  /// Returns the ratio of excess to force beyond which a misfit is new.
-  double usual_limit(std::size_t floor) const;
+  /// Returns the ratio of excess to force beyond which a misfit is new, given the usual ratio.
+  double limit(std::size_t floor, double usual) const {
+    return kJump * usual + kNoiseDoubt * least_[floor];
+  }
   double error_of(double excess, double variance) const;
 
   FloorLayout layout_;

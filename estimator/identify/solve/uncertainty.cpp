@@ -2,6 +2,7 @@
 #include "estimator/identify/solve/uncertainty.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -32,7 +33,7 @@ double spread_of(int blocks) {
 
 }  // namespace
 
-BatchMeans::BatchMeans(const FloorLayout& layout, double compensation)
+BatchMeans::BatchMeans(const FloorLayout& layout, int most_blocks, double compensation)
     : layout_(layout),
       columns_(kBlocks + PerturbedDesigns::kCount),
       factor_(layout),
@@ -43,6 +44,7 @@ BatchMeans::BatchMeans(const FloorLayout& layout, double compensation)
       holds_(static_cast<std::size_t>(layout.floors() * kBlocks), 0),
       perturbed_(layout) {
   static_assert(kBlocks % kLane == 0 && PerturbedDesigns::kCount % kLane == 0);
+  block_.reserve(static_cast<std::size_t>(std::max(most_blocks, kBlocks)));
   const auto unknowns = static_cast<std::size_t>(layout.unknowns());
   columns_values_.assign(unknowns * static_cast<std::size_t>(columns_), 0.0);
   for (std::vector<double>* v :
@@ -102,38 +104,41 @@ void BatchMeans::assemble(int floor) {
   add_bias_columns(floor);
 }
 
-/// Returns true if rows of a block hold the floor's own unknowns: rows of the floor or of the one
+/// Returns true if rows of a score hold the floor's own unknowns: rows of the floor or of the one
 /// below.
-bool BatchMeans::has_rows(int floor, int block) const {
+bool BatchMeans::has_rows(int floor, int score) const {
   const auto holds = [&](int f) {
-    return holds_[static_cast<std::size_t>(f * kBlocks + block)] != 0;
+    return holds_[static_cast<std::size_t>(f * kBlocks + score)] != 0;
   };
   return holds(floor) || (floor > 0 && layout_.shared() > 0 && holds(floor - 1));
 }
 
-int BatchMeans::blocks_with_rows(int floor) const {
-  int blocks = 0;
-  for (int b = 0; b < kBlocks; ++b) blocks += has_rows(floor, b) ? 1 : 0;
-  return blocks;
+int BatchMeans::scores_with_rows(int floor) const {
+  int scores = 0;
+  for (int s = 0; s < kBlocks; ++s) scores += has_rows(floor, s) ? 1 : 0;
+  return scores;
 }
 
-/// Returns the factor that widens the spread of few blocks for a floor's own unknown.
-double BatchMeans::widening(int floor, int position, int blocks) const {
-  if (blocks < kFewest || blocks == kBlocks) return 1;
+/// Returns the factor that widens the spread of few scores for a floor's own unknown.
+double BatchMeans::widening(int floor, int position, int scores) const {
+  if (scores < kFewest || scores == kBlocks) return 1;
   const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
   std::size_t at = shape.offset;
   for (int i = 0; i < position; ++i)
     at += static_cast<std::size_t>(shape.stride - packed_row_begin(i));
   at += static_cast<std::size_t>(position - packed_row_begin(position));
+  std::array<double, kBlocks> information{};
+  for (std::size_t b = 0; b < block_.size(); ++b)
+    if (block_[b] != nullptr)
+      information[static_cast<std::size_t>(score_of(static_cast<int>(b)))] += block_[b][at];
   double sum = 0, squares = 0;
-  for (const double* block : block_) {
-    const double information = block == nullptr ? 0 : block[at];
-    sum += information;
-    squares += information * information;
+  for (const double i : information) {
+    sum += i;
+    squares += i * i;
   }
   const double counting = squares > 0 ? sum * sum / squares : 1;
   return student(std::max(counting - 1, kMinDegrees)) / student(kBlocks - 1) *
-         std::sqrt(spread_of(blocks) / spread_of(kBlocks));
+         std::sqrt(spread_of(scores) / spread_of(kBlocks));
 }
 
 void BatchMeans::add_block_scores(int floor) {
@@ -144,23 +149,24 @@ void BatchMeans::add_block_scores(int floor) {
   std::fill(x_.begin(), x_.end(), 0.0);
   std::copy_n(solution_.begin() + first, unknowns, x_.begin());
   x_[static_cast<std::size_t>(unknowns)] = -1;
-  for (int b = 0; b < kBlocks; ++b) {
-    if (block_[static_cast<std::size_t>(b)] == nullptr) continue;
+  for (std::size_t b = 0; b < block_.size(); ++b) {
+    if (block_[b] == nullptr) continue;
+    const int s = score_of(static_cast<int>(b));
     std::fill(score_.begin(), score_.end(), 0.0);
-    kernels::in_use->subtract_product(block_[static_cast<std::size_t>(b)] + shape.offset, x_.data(),
-                                      score_.data(), shape.front, shape.stride);
-    for (int i = 0; i < unknowns; ++i) columns(first + i)[b] += score_[static_cast<std::size_t>(i)];
+    kernels::in_use->subtract_product(block_[b] + shape.offset, x_.data(), score_.data(),
+                                      shape.front, shape.stride);
+    for (int i = 0; i < unknowns; ++i) columns(first + i)[s] += score_[static_cast<std::size_t>(i)];
   }
   // The floor's own scores are now complete: the floor above has added its share.
-  const int blocks = blocks_with_rows(floor);
+  const int scores = scores_with_rows(floor);
   for (int u = first; u < first + layout_.own(); ++u) {
     double* row = columns(u);
     double mean = 0;
-    for (int b = 0; b < kBlocks; ++b) mean += row[b];
-    mean /= std::max(blocks, 1);
+    for (int s = 0; s < kBlocks; ++s) mean += row[s];
+    mean /= std::max(scores, 1);
     const double scale =
-        score_scale_[static_cast<std::size_t>(u)] * widening(floor, u - first, blocks);
-    for (int b = 0; b < kBlocks; ++b) row[b] = has_rows(floor, b) ? scale * (row[b] - mean) : 0.0;
+        score_scale_[static_cast<std::size_t>(u)] * widening(floor, u - first, scores);
+    for (int s = 0; s < kBlocks; ++s) row[s] = has_rows(floor, s) ? scale * (row[s] - mean) : 0.0;
   }
 }
 
@@ -185,7 +191,7 @@ void BatchMeans::add_bias_columns(int floor) {
 void BatchMeans::finish(int floor) {
   inverse_.step(factor_, floor, inverse_diagonal_.data());
   const double spread_scale = spread_of(kBlocks);
-  const bool enough = blocks_with_rows(floor) >= kFewest;
+  const bool enough = scores_with_rows(floor) >= kFewest;
   for (int u = floor * layout_.own(); u < (floor + 1) * layout_.own(); ++u) {
     const auto i = static_cast<std::size_t>(u);
     const double* row = columns(u);

@@ -21,9 +21,10 @@ namespace framewatch::estimator {
 /// by its tolerance.
 ///
 /// A pass begins when a block closes and takes steps(), spread over the instants of the next block,
-/// so that no instant is late. Results are those of the last completed pass. The scores come from
-/// the newest kBlocks blocks and a solution that fits them, whatever the window's length. A short
-/// window has too few blocks, so it uses these scores, scaled to its own information.
+/// so that no instant is late. Results are those of the last completed pass. The spread is that of
+/// kBlocks scores. A window of more blocks adds the scores of neighbouring blocks, so that every
+/// part of it counts. A short window has too few blocks, so it uses the scores of the newest
+/// kBlocks blocks and a solution that fits them, scaled to its own information.
 ///
 /// While fewer blocks have rows, the spread comes from those and is widened by Student's
 /// distribution, with as many degrees of freedom as blocks count: the last blocks of a motion that
@@ -33,11 +34,14 @@ class BatchMeans {
  public:
   static constexpr int kBlocks = 20, kFewest = 4;
 
-  /// compensation: share of the noise, see NoiseCompensation.
-  explicit BatchMeans(const FloorLayout& layout, double compensation = kCompensatedShare);
+  /// most_blocks: most blocks of a window. compensation: share of the noise, see
+  /// NoiseCompensation.
+  BatchMeans(const FloorLayout& layout, int most_blocks, double compensation = kCompensatedShare);
 
-  /// The window of kBlocks blocks, by the solution that fits it and its information.
+  /// The window of `blocks` blocks, at least kBlocks, by the solution that fits it and its
+  /// information.
   struct Fit {
+    int blocks;
     const std::vector<double>* solution;
     const std::vector<double>* information;
   };
@@ -52,10 +56,12 @@ class BatchMeans {
   void begin(const Sums& sums, StorySolver& solver, const Fit& fit,
              const std::vector<double>& prior, const std::vector<double>& prior_doubt,
              const NoiseCompensation& noise, double noise_level) {
-    for (int b = 0; b < kBlocks; ++b) {
+    block_.assign(static_cast<std::size_t>(fit.blocks), nullptr);
+    std::fill(holds_.begin(), holds_.end(), 0);
+    for (int b = 0; b < fit.blocks; ++b) {
       block_[static_cast<std::size_t>(b)] = sums.block(b);
       for (int f = 0; f < layout_.floors(); ++f)
-        holds_[static_cast<std::size_t>(f * kBlocks + b)] = sums.holds(b, f) ? 1 : 0;
+        if (sums.holds(b, f)) holds_[static_cast<std::size_t>(f * kBlocks + score_of(b))] = 1;
     }
     begin(sums.shape(), solver, fit, prior, prior_doubt, noise, noise_level);
   }
@@ -85,6 +91,9 @@ class BatchMeans {
     a(std_error_, prior_share_, noise_share_);
     noise_.archive(a, rows);
     shape_ = &sums.shape();
+    std::int64_t blocks = static_cast<std::int64_t>(block_.size());
+    if (a.since(18)) a.within(blocks, kBlocks, kMaxBlocks);
+    block_.resize(static_cast<std::size_t>(blocks), nullptr);
     for (const double*& block : block_) {
       std::int64_t number = running() ? sums.number_of(block) : -1;
       a(number);
@@ -95,6 +104,7 @@ class BatchMeans {
   }
 
  private:
+  static constexpr int kMaxBlocks = 1 << 20;
   void begin(const GramShape& shape, StorySolver& solver, const Fit& fit,
              const std::vector<double>& prior, const std::vector<double>& prior_doubt,
              const NoiseCompensation& noise, double noise_level);
@@ -102,9 +112,11 @@ class BatchMeans {
   void add_block_scores(int floor);
   void add_bias_columns(int floor);
   void finish(int floor);
-  bool has_rows(int floor, int block) const;
-  int blocks_with_rows(int floor) const;
-  double widening(int floor, int position, int blocks) const;
+  /// Returns the score, 0..kBlocks-1, to which a block counts.
+  int score_of(int block) const { return block * kBlocks / static_cast<int>(block_.size()); }
+  bool has_rows(int floor, int score) const;
+  int scores_with_rows(int floor) const;
+  double widening(int floor, int position, int scores) const;
   double* columns(int unknown) { return columns_values_.data() + unknown * columns_; }
 
   FloorLayout layout_;
@@ -115,9 +127,9 @@ class BatchMeans {
   double noise_level_ = 0;
   int next_step_;
   const GramShape* shape_ = nullptr;
-  std::vector<const double*> block_;    ///< nullptr: before the start
-  std::vector<std::uint8_t> holds_;     ///< floors x blocks: the floor has rows in it
-  std::vector<double> columns_values_;  ///< unknowns x (blocks, then perturbations)
+  std::vector<const double*> block_;    ///< newest first; nullptr: before the start
+  std::vector<std::uint8_t> holds_;     ///< floors x kBlocks: the floor has rows in a score
+  std::vector<double> columns_values_;  ///< unknowns x (scores, then perturbations)
   PerturbedDesigns perturbed_;
   std::vector<double> solution_, score_scale_, prior_, prior_doubt_, x_, score_, inverse_diagonal_;
   std::vector<double> new_error_, new_share_, new_noise_share_;

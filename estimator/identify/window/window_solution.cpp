@@ -39,7 +39,7 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       noise_(layout, compensation),
       warm_share_(warm),
       solver_(layout),
-      errors_(layout, compensation),
+      errors_(layout, most_blocks(options), compensation),
       influential_(layout, most_blocks(options), compensation),
       std_error_(static_cast<std::size_t>(layout.unknowns()), 0),
       checked_(std_error_.size(), 0),
@@ -136,11 +136,11 @@ void WindowSolution::rescale(int unknown, double factor) {
 /// Returns the standard error of the present solution. std_error() is that of an earlier one, at
 /// most two blocks ago. Noise alone moves the solution in that time by less than kExplained of its
 /// errors; what it moved beyond is an error too.
-double WindowSolution::present_error(int unknown) const {
+double WindowSolution::present_error(int unknown, const ModelMisfit& usual) const {
   const auto u = static_cast<std::size_t>(unknown);
   const double moved = std::abs(solver_.solution()[u] - checked_[u]);
   const double known = std::max(std_error_[u], moved - InfluentialPart::kExplained * std_error_[u]);
-  return std::hypot(known, misfit_.new_error(unknown, errors_.inverse_diagonal()[u]));
+  return std::hypot(known, misfit_.new_error(unknown, errors_.inverse_diagonal()[u], usual));
 }
 
 double WindowSolution::misfit(int unknown) const {
@@ -163,10 +163,10 @@ double WindowSolution::gate_level() const {
                                            : noise_scale_;
 }
 
-bool WindowSolution::published(int unknown) const {
+bool WindowSolution::published(int unknown, const ModelMisfit& usual) const {
   const auto u = static_cast<std::size_t>(unknown);
   return shown(unknown) &&
-         present_error(unknown) < unknowns_[u].error_limit * solver_.solution()[u];
+         present_error(unknown, usual) < unknowns_[u].error_limit * solver_.solution()[u];
 }
 
 bool WindowSolution::place_known(int unknown) const {
@@ -240,6 +240,7 @@ bool WindowSolution::looks_symmetric(const WindowEstimate& estimate) const {
 
 void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
   see(*situation.known);
+  const ModelMisfit& usual = (situation.main != nullptr ? *situation.main : *this).misfit_;
   bool any = false, any_frame = false, warming = true;
   for (int own = 0; own < layout_.unknowns(); ++own) {
     const int u = stands_for(own);
@@ -249,10 +250,10 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     const double theta0 = (*situation.theta0)[parameter];
     const int floor = u / layout_.own();
     const bool warm = solved_ && errors_known_ && situation.tuned && this->warm(floor) &&
-                      (situation.errors_of == nullptr || situation.errors_of->warm(floor));
+                      (situation.main == nullptr || situation.main->warm(floor));
     e.reason[p] = place_known_[i] == 0 || rowless(floor) ? Observability::channel_lost
                   : !warm                                ? Observability::warming_up
-                  : published(u)                         ? Observability::observable
+                  : published(u, usual)                  ? Observability::observable
                   : equation_lost(u)                     ? Observability::channel_lost
                                                          : Observability::quiet;
     const bool observable = e.reason[p] == Observability::observable;
@@ -264,7 +265,7 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     e.value[p] = observable ? e.solution[p] : kNaN;
     const double of_share =
         share_error_.empty() ? 0 : share_error_[static_cast<std::size_t>(own)] * e.solution[p];
-    e.std_error[p] = observable ? std::hypot(theta0 * present_error(u), of_share) : kNaN;
+    e.std_error[p] = observable ? std::hypot(theta0 * present_error(u, usual), of_share) : kNaN;
     const double noise = noise_.energy()[i] * gate_level();
     e.snr[p] = solved_ && noise > 0 ? solver_.information()[i] / noise : 0;
     const bool shares = solved_ && errors_known_;

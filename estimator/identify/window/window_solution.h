@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -44,13 +45,15 @@ class WindowSolution {
   void solve(const WindowParts& sums, const RowFilter& rows, const Trust& trust, bool closes_block);
 
   /// Begins a pass of standard errors, spread over instants (BatchMeans, InfluentialPart). blocks:
-  /// length of the window in blocks of `all`. fit: the solution that fits BatchMeans::kBlocks
-  /// blocks, this one or another. Does nothing until both have solved these rows: the block that
-  /// fills a window for the first time closes earlier, and errors would be zero.
+  /// length of the window in blocks of `all`. main: the solution of BatchMeans::kBlocks blocks,
+  /// which gives the errors of a shorter window. Does nothing until both have solved these rows:
+  /// the block that fills a window for the first time closes earlier, and errors would be zero.
   template <typename Sums>
-  void begin_errors(const Sums& all, int blocks, const WindowSolution& fit) {
-    if (fresh_ || fit.fresh_) return;
-    const BatchMeans::Fit of{&fit.solver_.solution(), &fit.solver_.information()};
+  void begin_errors(const Sums& all, int blocks, const WindowSolution& main) {
+    if (fresh_ || main.fresh_) return;
+    const StorySolver& fit = (blocks < BatchMeans::kBlocks ? main : *this).solver_;
+    const BatchMeans::Fit of{std::max(blocks, BatchMeans::kBlocks), &fit.solution(),
+                             &fit.information()};
     influential_.begin(all, blocks, solver_, prior_, centre_, noise_);
     errors_.begin(all, solver_, of, prior_, doubt_, noise_, noise_scale_);
   }
@@ -87,8 +90,9 @@ class WindowSolution {
     const Eigen::VectorXd* theta0;           ///< the parameters that x is relative to, theta order
     const std::vector<std::uint8_t>* known;  ///< places with a working sensor, as in DeformationSet
     bool tuned;                              ///< the filters have been found to match
-    /// The window whose blocks give the standard errors, if it is another one.
-    const WindowSolution* errors_of = nullptr;
+    /// The main window, if this is another one. It is short and always solved, so it knows what the
+    /// model usually leaves, and the errors of shorter windows come from its blocks.
+    const WindowSolution* main = nullptr;
   };
   /// Fills in everything that follows from this window. Times, boxplots and last values are left to
   /// the caller.
@@ -130,8 +134,8 @@ class WindowSolution {
   bool equation_lost(int unknown) const;
   bool rowless(int floor) const;
   void see(const std::vector<std::uint8_t>& known);
-  bool published(int unknown) const;
-  double present_error(int unknown) const;
+  bool published(int unknown, const ModelMisfit& usual) const;
+  double present_error(int unknown, const ModelMisfit& usual) const;
   /// Returns the noise level that motion must exceed, over the level that the tuning assumes.
   double gate_level() const;
   bool looks_symmetric(const WindowEstimate& estimate) const;

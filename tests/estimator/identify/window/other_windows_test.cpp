@@ -26,6 +26,10 @@ constexpr int kFewest = 5;
 constexpr double kFarErrorRatio = 2;
 constexpr double kAlikePerMass = 400;     // 1/s^2: a first mode near 2 Hz
 constexpr double kAlikeDamping_s = 2e-3;  // damping over stiffness
+/// Two samples of the base, 20 ms apart, off by so much.
+constexpr double kGlitched_s = 60, kGlitch_s = 30, kGlitch_mps2 = 10;
+/// What a value may not be at once: so wrong, and by so many of its errors.
+constexpr double kWrong = 0.03, kCertain = 5;
 /// Instants until a filter is refilled, at most, and of the rows that a value needs.
 constexpr int kFill = 30, kSecond = 100;
 
@@ -91,6 +95,40 @@ TEST(OtherWindows, FourASecondEachFromTheSameBlocks) {
   EXPECT_GT(spread[1], spread[2]);
   EXPECT_GT(spread[2], spread[3]);
   EXPECT_LT(spread[3], 0.001);
+}
+
+/// Two samples of a loose connector pass for ringing. Windows of every length, which hold them for
+/// so long, must withhold their values or state errors that cover them.
+TEST(OtherWindows, CountAGlitchAnywhereInTheWindow) {
+  Shaken b(daemon::table1(), daemon::table1_theta(), kGlitched_s);
+  int base = 0;
+  while (b.config.axes[static_cast<std::size_t>(base)].story != 0) ++base;
+  const int glitch = static_cast<int>(kGlitch_s * 100);
+  b.accel(glitch, base) += kGlitch_mps2;
+  b.accel(glitch + 2, base) += kGlitch_mps2;
+  Pipeline pipeline(b.config);
+  std::map<int, int> after, withheld;
+  const auto judge = [&](const WindowEstimate& e) {
+    const double end_s = seconds_of(e.end - Time{});
+    if (end_s < kGlitch_s || e.status == WindowStatus::warming_up) return;
+    for (int p = 0; p < b.table.size(); ++p) {
+      if (b.table[p].kind != ParameterKind::frame_stiffness) continue;
+      const auto u = static_cast<std::size_t>(p);
+      ++after[e.window];
+      if (e.reason[u] != Observability::observable) {
+        ++withheld[e.window];
+        continue;
+      }
+      const double error = std::abs(e.value[u] - b.truth[p]);
+      EXPECT_FALSE(error > kWrong * b.truth[p] && error > kCertain * e.std_error[u])
+          << "window " << e.window << " that ends at " << end_s << " s: " << b.table[p].name << " "
+          << e.value[u] / b.truth[p] << " +- " << e.std_error[u] / b.truth[p];
+    }
+  };
+  for (int t = 0; t < b.accel.rows(); ++t)
+    for (int a = 0; a < b.accel.cols(); ++a)
+      each_window(pipeline.push(test::sample_at(b.accel, 100, t, a)), judge);
+  for (int w = 0; w <= 3; ++w) EXPECT_LT(2 * withheld[w], after[w]) << "window " << w;
 }
 
 TEST(HeldValues, ADyingChannelLeavesOthersAlone) {

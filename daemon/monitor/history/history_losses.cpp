@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "daemon/monitor/history/history_losses.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/clocks.h"
+#include "daemon/base/numbers.h"
+#include "daemon/base/utc_time.h"
+#include "estimator/numeric/nan.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kLikely = 0.3;  // evidence from which a loss is shown before it is proven
+constexpr const char* kAll = "all alike";
+
+std::string change_text(double ratio, double std_error) {
+  return fmt::format("{} %", change_with_error(ratio, std_error));
+}
+
+}  // namespace
+
+std::string element_name(const HistoryLosses& l, int element) {
+  return element == estimator::YearsWatch::kAllAlike
+             ? kAll
+             : l.elements[static_cast<std::size_t>(element)];
+}
+
+HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather) {
+  HistoryLosses out;
+  for (const estimator::Covariate& c : weather.covariates) out.covariates.push_back(c.name);
+  if (elements.empty()) return out;
+  out.from_day = elements[0].days.begin()->first;
+  out.to_day = elements[0].days.rbegin()->first;
+  for (const ElementDays& e : elements) {
+    out.elements.push_back(e.name);
+    out.from_day = std::min(out.from_day, e.days.begin()->first);
+    out.to_day = std::max(out.to_day, e.days.rbegin()->first);
+  }
+  estimator::YearsWatch watch(elements.size(), weather.covariates, estimator::LifeBudget{});
+  for (std::int64_t day = out.from_day; day <= out.to_day; ++day) {
+    std::vector<estimator::DayValue> values;
+    for (const ElementDays& e : elements) {
+      const auto found = e.days.find(day);
+      values.push_back((found == e.days.end() ? estimator::DayMean() : found->second.mean).mean());
+    }
+    if (const auto loss = watch.push(static_cast<double>(day), values, weather.of(day)))
+      out.found.push_back(*loss);
+  }
+  out.days = watch.days();
+  for (std::size_t p = 0; p < elements.size(); ++p) {
+    const int element = static_cast<int>(p);
+    out.state.push_back({elements[p].usual(), watch.evidence(element), watch.step(element)});
+  }
+  constexpr int kAllAlike = estimator::YearsWatch::kAllAlike;
+  out.state.push_back({estimator::kNaN, watch.evidence(kAllAlike), watch.step(kAllAlike)});
+  return out;
+}
+
+std::string losses_sentence(const HistoryLosses& l) {
+  const estimator::LifeBudget budget;
+  return fmt::format(
+      "{} of at least {:.0f} % that weather does not explain; a false one in {:.0f} years has a "
+      "probability of {:.0f} %",
+      l.found.empty()       ? "no loss"
+      : l.found.size() == 1 ? "1 loss"
+                            : fmt::format("{} losses", l.found.size()),
+      100 * budget.least_loss, budget.years, 100 * budget.probability);
+}
+
+std::string loss_sentence(const HistoryLosses& l, const estimator::YearsWatch::Finding& f) {
+  return fmt::format("{} {}, since {}, found {}{}", element_name(l, f.element),
+                     change_text(f.ratio, f.std_error),
+                     day_text(static_cast<std::int64_t>(f.since_day)),
+                     day_text(static_cast<std::int64_t>(f.found_day)),
+                     f.element == estimator::YearsWatch::kAllAlike
+                         ? ". A change of all frames may also be a mass, or weather that is not "
+                           "measured"
+                         : "");
+}
+
+std::vector<std::vector<std::string>> losses_rows(const HistoryLosses& l) {
+  std::vector<std::vector<std::string>> out;
+  for (std::size_t p = 0; p < l.state.size(); ++p) {
+    const HistoryLosses::State& s = l.state[p];
+    const bool all = p == l.elements.size();
+    out.push_back({all ? kAll : l.elements[p], all ? "" : fmt::format("{:.5g}", s.median),
+                   fmt::format("{:.0f} %", 100 * s.evidence),
+                   s.evidence < kLikely
+                       ? "no loss"
+                       : change_text(std::expm1(s.step.size), s.step.std_error) + " since " +
+                             day_text(static_cast<std::int64_t>(s.step.day))});
+  }
+  return out;
+}
+
+std::string losses_text(const HistoryLosses& l) {
+  if (l.elements.empty()) return "no hour with a value of a frame's stiffness\n";
+  std::string with;
+  for (const std::string& name : l.covariates) with += (with.empty() ? "" : ", ") + name;
+  std::string out =
+      fmt::format("{} with values, {} to {}; weather: {}\n{}\n", days_text(l.days),
+                  day_text(l.from_day), day_text(l.to_day),
+                  with.empty() ? "not known, the season stands for it" : with, losses_sentence(l));
+  for (const auto& f : l.found) out += "  " + loss_sentence(l, f) + "\n";
+  out += fmt::format("\n{:<12} {:>12} {:>9}  {}\n", "element", "median, N/m", "evidence",
+                     "most likely");
+  for (const auto& row : losses_rows(l))
+    out += fmt::format("{:<12} {:>12} {:>9}  {}\n", row[0], row[1], row[2], row[3]);
+  return out;
+}
+
+std::string losses_json(const HistoryLosses& l) {
+  using nlohmann::ordered_json;
+  ordered_json out{{"schema", "framewatch.losses/1"},
+                   {"days", l.days},
+                   {"weather", l.covariates},
+                   {"losses", ordered_json::array()},
+                   {"elements", ordered_json::array()}};
+  for (const auto& f : l.found)
+    out["losses"].push_back({{"parameter", element_name(l, f.element)},
+                             {"ratio", f.ratio},
+                             {"std_error", f.std_error},
+                             {"since", day_text(static_cast<std::int64_t>(f.since_day))},
+                             {"found", day_text(static_cast<std::int64_t>(f.found_day))}});
+  for (std::size_t p = 0; p < l.state.size(); ++p)
+    out["elements"].push_back({{"parameter", p == l.elements.size() ? kAll : l.elements[p].c_str()},
+                               {"evidence", l.state[p].evidence},
+                               {"ratio", std::expm1(l.state[p].step.size)},
+                               {"std_error", l.state[p].step.std_error}});
+  return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace framewatch::daemon

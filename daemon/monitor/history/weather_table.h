@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/years/weather_lags.h"
+
+namespace framewatch::daemon {
+
+/// Daily means of weather and use.
+struct WeatherTable {
+  std::vector<estimator::Covariate> covariates;
+  std::map<std::int64_t, std::vector<double>> days;  ///< by day since 1970, UTC; NaN: no value
+
+  /// Returns the means of a day; NaN: no value.
+  std::vector<double> of(std::int64_t day) const;
+};
+
+/// Reads a table (CSV, plain or .gz): the column "time" (UTC, or seconds since 1970), then
+/// covariates with their unit at the end of the name: _degc, _pct or _mps. Empty cells and "nan"
+/// are no values. Returns nullopt, with every problem, when the file breaks a rule.
+std::optional<WeatherTable> read_weather(const std::string& path,
+                                         std::vector<std::string>& problems);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "estimator/years/weather_lags.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr int kWaves = 2;         // of the season: a year and half a year
+constexpr double kFrost_d = 2;    // lag of what freezes, days
+constexpr double kChange = 3;     // usual change of a covariate from day to day, its units
+constexpr double kForgets_d = 9;  // days after which an unknown covariate may be anything usual
+
+double toward(double from, double to, double days, double lag_d) {
+  return lag_d > 0 ? to + (from - to) * std::exp(-days / lag_d) : to;
+}
+
+}  // namespace
+
+WeatherLags::WeatherLags(const std::vector<Covariate>& covariates)
+    : covariates_(covariates), past_(covariates.size()) {
+  std::size_t regressors = 1;
+  for (const Covariate& c : covariates_) regressors += std::size(kLags_d) + (c.freezes ? 1 : 0);
+  if (covariates_.empty()) regressors += 2 * kWaves;
+  regressors_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(regressors));
+  regressors_[0] = 1;
+}
+
+void WeatherLags::push(double day, const std::vector<double>& means) {
+  const double days = begun_ ? std::max(day - day_, 0.0) : 0;
+  begun_ = true;
+  day_ = day;
+  Eigen::Index r = 1;
+  for (std::size_t c = 0; c < covariates_.size(); ++c) {
+    Past& past = past_[c];
+    const double now = means[c];
+    if (std::isfinite(now)) {
+      if (!past.known) {
+        past.first = now;
+        std::fill(std::begin(past.lagged), std::end(past.lagged), now);
+        past.frost = std::min(now, 0.0);
+      }
+      past.known = true;
+      past.day = day;
+      past.newest = now;
+    }
+    for (std::size_t i = 0; i < std::size(kLags_d); ++i) {
+      past.lagged[i] = toward(past.lagged[i], past.newest, days, kLags_d[i]);
+      regressors_[r++] = (past.lagged[i] - past.first) / kScale;
+    }
+    if (!covariates_[c].freezes) continue;
+    past.frost = toward(past.frost, std::min(past.newest, 0.0), days, kFrost_d);
+    regressors_[r++] = past.frost / kScale;
+  }
+  if (!covariates_.empty()) return;
+  for (int wave = 1; wave <= kWaves; ++wave) {
+    const double angle = 2 * M_PI * wave * day / kYear_d;
+    regressors_[r++] = std::cos(angle);
+    regressors_[r++] = std::sin(angle);
+  }
+}
+
+double WeatherLags::doubt() const {
+  double variance = 0;
+  for (const Past& past : past_) {
+    if (!past.known) return std::numeric_limits<double>::infinity();
+    const double change = kChange / kScale;
+    variance += change * change * std::min(day_ - past.day, kForgets_d);
+  }
+  return std::sqrt(variance);
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+// Tests the watch for years in a building of eight stories that follows weather with lags of its
+// own: no false alarm, and losses that are found, placed and sized.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "estimator/numeric/nan.h"
+#include "estimator/numeric/quantile.h"
+#include "estimator/years/years_watch.h"
+
+namespace framewatch::estimator {
+namespace years_test {
+
+constexpr int kStories = 8;
+constexpr double kYear_d = 365.25;
+constexpr double kStiffness = 5e8;  // N/m
+constexpr double kNoise = 0.006;    // of a day's value
+constexpr int kLossDay = 400, kThreeYears_d = 1096, kTwelveYears_d = 4383, kThirtyYears_d = 10957;
+/// Largest error of a loss's size in some hundred draws, in standard errors.
+constexpr double kMostErrors = 5;
+
+/// A quantity that wanders about zero.
+struct Wander {
+  double deviation, days, now = 0;
+  double next(std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    const double kept = std::exp(-1 / days);
+    now = kept * now + deviation * std::sqrt(1 - kept * kept) * normal(random);
+    return now;
+  }
+};
+
+/// Eight stories in a temperate climate: temperature with seasons and fronts, humidity. Every story
+/// follows both with its own size and lag, is stiffer when frozen, and wanders, alone and with the
+/// others, for no reason that anyone measures. The lags are not those of WeatherLags.
+struct World {
+  explicit World(unsigned seed) : random(seed) {
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform;
+    for (Story& s : stories) {
+      s.lag_d = 0.5 + 5.5 * uniform(random);
+      s.per_degc = -0.0012 * (1 + 0.4 * normal(random));
+      s.per_percent = -0.0002 * (1 + 0.5 * normal(random));
+      s.frozen_per_degc = -0.001 * uniform(random);
+    }
+  }
+  void next() {
+    ++day;
+    std::normal_distribution<double> normal;
+    const double season = std::sin(2 * M_PI * (day - 110) / kYear_d);
+    degc = 12 + 9 * season + front.next(random);
+    percent = 65 - 8 * season + rain.next(random);
+    const double together = all.next(random);
+    for (Story& s : stories) {
+      s.degc = day == 1 ? degc : degc + (s.degc - degc) * std::exp(-1 / s.lag_d);
+      s.percent = day == 1 ? percent : percent + (s.percent - percent) * std::exp(-1 / 8.0);
+      s.value = kStiffness * s.left *
+                std::exp(s.per_degc * (s.degc - 12) + s.per_percent * (s.percent - 65) +
+                         s.frozen_per_degc * std::min(s.degc, 0.0) + s.own.next(random) + together +
+                         kNoise * normal(random));
+    }
+  }
+  struct Story {
+    double lag_d = 1, per_degc = 0, per_percent = 0, frozen_per_degc = 0;
+    double left = 1;  ///< of the stiffness
+    Wander own{0.002, 10};
+    double degc = 0, percent = 0, value = 0;
+  };
+  std::mt19937_64 random;
+  int day = 0;
+  double degc = 0, percent = 0;
+  Wander front{3, 3}, rain{5, 2}, all{0.003, 10};
+  std::vector<Story> stories = std::vector<Story>(kStories);
+};
+
+const std::vector<Covariate> kWeather = {{"outside_degc", true}, {"humidity_pct", false}};
+
+/// Times as many draws when FRAMEWATCH_YEARS_TIMES is set: 5 for the numbers of docs/years.md.
+int draws(int usual) {
+  const char* times = std::getenv("FRAMEWATCH_YEARS_TIMES");
+  return usual * (times != nullptr ? std::max(std::atoi(times), 1) : 1);
+}
+
+/// What a watch sees of a day, which an event may falsify.
+struct Seen {
+  std::vector<DayValue> values;
+  std::vector<double> weather;
+};
+
+/// Runs a world for so many days. event: changes it before a day. sight: changes what is seen.
+std::vector<YearsWatch::Finding> run(unsigned seed, int days,
+                                     const std::function<void(World&)>& event = {},
+                                     const std::function<void(int, Seen&)>& sight = {},
+                                     const std::vector<Covariate>& covariates = kWeather) {
+  World world(seed);
+  YearsWatch watch(kStories, covariates, LifeBudget{});
+  std::vector<YearsWatch::Finding> out;
+  for (int day = 1; day <= days; ++day) {
+    if (event) event(world);
+    world.next();
+    Seen seen;
+    for (const World::Story& s : world.stories) seen.values.push_back({s.value, kNoise * s.value});
+    if (!covariates.empty()) seen.weather = {world.degc, world.percent};
+    if (sight) sight(day, seen);
+    const auto finding = watch.push(day, seen.values, seen.weather);
+    if (finding) out.push_back(*finding);
+  }
+  return out;
+}
+
+int alarms(int runs, const std::function<void(int, Seen&)>& sight = {},
+           const std::vector<Covariate>& covariates = kWeather) {
+  int out = 0;
+  for (int seed = 0; seed < runs; ++seed)
+    out += run(static_cast<unsigned>(seed), kThreeYears_d, {}, sight, covariates).empty() ? 0 : 1;
+  return out;
+}
+
+std::function<void(World&)> loss(const std::vector<int>& stories, double share) {
+  return [=](World& w) {
+    if (w.day + 1 != kLossDay) return;
+    for (const int s : stories) w.stories[static_cast<std::size_t>(s)].left *= 1 - share;
+  };
+}
+
+struct Found {
+  int found = 0, placed = 0;
+  std::vector<double> days;
+  double worst = 0;  ///< errors of the size
+};
+Found find(int runs, const std::vector<int>& only, double share, int days) {
+  Found out;
+  for (int i = 0; i < runs; ++i) {
+    const std::vector<int> where = only.empty() ? std::vector<int>{i % kStories} : only;
+    const auto findings = run(1000 + static_cast<unsigned>(i), kLossDay + days, loss(where, share));
+    if (findings.empty()) continue;
+    ++out.found;
+    const YearsWatch::Finding& f = findings.front();
+    const int right = where.size() == 1 ? where[0] : YearsWatch::kAllAlike;
+    if (f.element != right) continue;
+    ++out.placed;
+    out.days.push_back(f.found_day - kLossDay);
+    out.worst = std::max(out.worst, std::abs(f.ratio + share) / f.std_error);
+  }
+  return out;
+}
+
+void show(const char* what, int runs, Found& f) {
+  std::printf(
+      "%s: %d runs, %d found, %d placed, median %.0f days, sizes off by %.1f errors at most\n",
+      what, runs, f.found, f.placed, upper_median(f.days), f.worst);
+}
+
+TEST(Years, NoAlarmInThreeYearsOfAHealthyBuilding) {
+  EXPECT_EQ(alarms(draws(60)), 0);
+}
+
+TEST(Years, FivePercentOfAnyStoryIsFoundWithinDays) {
+  const int runs = draws(24);
+  Found five = find(runs, {}, 0.05, 60);
+  EXPECT_EQ(five.found, runs);
+  EXPECT_GE(five.placed, 0.95 * runs);
+  EXPECT_LT(upper_median(five.days), 5);
+  EXPECT_LT(five.worst, kMostErrors);
+  show("5 % of a story", runs, five);
+}
+
+TEST(Years, TwoPercentOfAnyStoryIsFoundWithinAYear) {
+  const int runs = draws(24);
+  Found two = find(runs, {}, 0.02, 365);
+  EXPECT_GE(two.placed, 0.9 * runs);
+  EXPECT_LT(two.worst, kMostErrors);
+  show("2 % of a story", runs, two);
+}
+
+TEST(Years, AllStoriesAlikeAreReportedAsThat) {
+  const int runs = draws(12);
+  Found all = find(runs, {0, 1, 2, 3, 4, 5, 6, 7}, 0.02, 365);
+  EXPECT_GE(all.placed, 0.9 * runs);
+  show("2 % of all stories", runs, all);
+}
+
+TEST(Years, NoAlarmInThirtyYearsAndALossAfterTwelveIsFoundWithinDays) {
+  for (int seed = 0; seed < draws(4); ++seed) {
+    EXPECT_TRUE(run(static_cast<unsigned>(seed), kThirtyYears_d).empty()) << seed;
+    const std::size_t story = static_cast<std::size_t>(seed) % kStories;
+    const auto findings = run(static_cast<unsigned>(seed), kTwelveYears_d + 30, [=](World& w) {
+      if (w.day + 1 == kTwelveYears_d) w.stories[story].left = 0.95;
+    });
+    ASSERT_EQ(findings.size(), 1) << seed;
+    EXPECT_EQ(findings[0].element, static_cast<int>(story));
+    EXPECT_LE(findings[0].found_day - kTwelveYears_d, 10);
+  }
+}
+
+TEST(Years, WithoutAThermometerTheSeasonStandsForTheWeather) {
+  EXPECT_EQ(alarms(draws(12), {}, {}), 0);
+}
+
+TEST(Years, AThermometerThatIsAwayOrSticksRaisesNothing) {
+  EXPECT_EQ(alarms(draws(8),
+                   [](int day, Seen& seen) {
+                     if (day > 500 && day < 530) seen.weather[0] = kNaN;
+                   }),
+            0);
+  double stuck = 0;
+  EXPECT_EQ(alarms(draws(8),
+                   [&](int day, Seen& seen) {
+                     if (day == 500) stuck = seen.weather[0];
+                     if (day > 500 && day < 530) seen.weather[0] = stuck;
+                   }),
+            0);
+}
+
+TEST(Years, DaysAndElementsWithoutValuesRaiseNothing) {
+  EXPECT_EQ(alarms(draws(8),
+                   [](int day, Seen& seen) {
+                     if (day % 3 != 0)
+                       for (DayValue& v : seen.values) v = {kNaN, kNaN};
+                     if (day > 300 && day < 600) seen.values[2] = {kNaN, kNaN};
+                   }),
+            0);
+}
+
+TEST(Years, AKnownLossIsNotFoundAgainAndTheNextOneIs) {
+  const auto twice = [](World& w) {
+    if (w.day + 1 == kLossDay) w.stories[2].left = 0.95;
+    if (w.day + 1 == kLossDay + 200) w.stories[5].left = 0.93;
+  };
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const auto findings = run(seed, kLossDay + 400, twice);
+    ASSERT_EQ(findings.size(), 2) << seed;
+    EXPECT_EQ(findings[0].element, 2);
+    EXPECT_EQ(findings[1].element, 5);
+  }
+}
+
+TEST(Years, OneElementAloneIsWatched) {
+  YearsWatch watch(1, {}, LifeBudget{});
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  std::optional<YearsWatch::Finding> found;
+  for (int day = 0; day < 300 && !found; ++day)
+    found = watch.push(day, {{(day < 200 ? 1 : 0.9) * (1 + kNoise * normal(random)), kNoise}}, {});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->element, 0);
+  EXPECT_EQ(found->since_day, 200);
+}
+
+TEST(DayMean, StatesTheLargerOfErrorAndScatter) {
+  DayMean alike, apart;
+  for (const double v : {100.0, 100.0, 100.0, 100.0}) alike.push(v, 2);
+  for (const double v : {90.0, 110.0, 90.0, 110.0}) apart.push(v, 2);
+  EXPECT_DOUBLE_EQ(alike.mean().std_error, 1);
+  EXPECT_NEAR(apart.mean().std_error, 10 / std::sqrt(3), 1e-9);
+  EXPECT_TRUE(std::isnan(DayMean().mean().value));
+}
+
+}  // namespace years_test
+}  // namespace framewatch::estimator
