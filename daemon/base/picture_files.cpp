@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/base/picture_files.h"
 
+#include <array>
+#include <atomic>
 #include <cctype>
-#include <chrono>
-#include <deque>
 #include <filesystem>
 #include <set>
 #include <thread>
 
 #include <fmt/core.h>
 
-#include "daemon/base/process.h"
+#include "daemon/base/svg_converter.h"
+#include "drivers/files/caught.h"
 #include "drivers/files/text_output.h"
 
 namespace framewatch::daemon {
@@ -18,10 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kConvertersAtOnce = 2;
-constexpr const char* kPixelsPerInch = "600";  // of PNG: what journals ask for line drawings
-constexpr const char* kCssPixelsPerInch = "96";
-constexpr int kNoSuchProgram = 127;  // exit code of env
+constexpr std::size_t kThreads = 2;
+constexpr double kPixelsPerMm = 96 / 25.4;
 
 /// Returns the picture's name as a file name that no picture before has.
 std::string file_name(const std::string& name, std::set<std::string>& used) {
@@ -33,71 +32,54 @@ std::string file_name(const std::string& name, std::set<std::string>& used) {
   return out;
 }
 
-/// Runs rsvg-convert for many files, some at once.
-class Converters {
- public:
-  /// Starts a conversion, after others have ended if need be.
-  void convert(const std::string& from, const std::string& to, const std::string& format) {
-    wait(kConvertersAtOnce - 1);
-    if (!problem_.empty()) return;
-    // Without a date in the file, the same picture has the same bytes.
-    std::string error;
-    const char* density = format == "png" ? kPixelsPerInch : kCssPixelsPerInch;
-    auto child = ChildProcess::start(
-        {"SOURCE_DATE_EPOCH=0", "rsvg-convert", "--format", format, "--dpi-x", density, "--dpi-y",
-         density, "--background-color", "white", "--output", to, from},
-        error, "/usr/bin/env");
-    if (!child)
-      problem_ = "rsvg-convert: " + error;
-    else
-      running_.push_back(*child);
-  }
-
-  /// Waits until at most `most` conversions run.
-  void wait(std::size_t most) {
-    while (running_.size() > most) {
-      const auto code = running_.front().ended();
-      if (!code) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        continue;
-      }
-      running_.pop_front();
-      if (*code == kNoSuchProgram)
-        problem_ = "pictures need the program rsvg-convert: install the package librsvg2-bin";
-      else if (*code != 0)
-        problem_ = fmt::format("rsvg-convert ended with exit code {}", *code);
-    }
-  }
-
-  const std::string& problem() const { return problem_; }
-
- private:
-  std::deque<ChildProcess> running_;
-  std::string problem_;
+/// A file to write.
+struct Drawing {
+  const SvgPlot* plot;
+  double width_mm;
+  std::string format, path;
 };
+
+/// Writes files, several at once. Returns an empty string, or the reason of a failure.
+std::string draw_all(const SvgConverter& converter, const std::vector<Drawing>& drawings) {
+  std::atomic<std::size_t> next = 0;
+  std::array<std::string, kThreads> problems;
+  const auto work = [&](std::string& problem) {
+    for (std::size_t i = next++; i < drawings.size() && problem.empty(); i = next++) {
+      const Drawing& d = drawings[i];
+      const double width_px = kPixelsPerMm * d.width_mm;
+      problem = converter.convert(d.plot->document(d.width_mm), width_px, d.plot->height(),
+                                  d.format, d.path);
+    }
+  };
+  std::vector<std::thread> others;
+  for (std::size_t t = 1; t < kThreads; ++t)
+    others.emplace_back([&, t] {
+      if (const std::string thrown = drivers::caught([&] { work(problems[t]); }); !thrown.empty())
+        problems[t] = thrown;
+    });
+  work(problems[0]);
+  for (std::thread& thread : others) thread.join();
+  return problems[0].empty() ? problems[1] : problems[0];
+}
 
 std::string write_all(const std::vector<Picture>& pictures, const std::string& folder,
                       const std::vector<std::string>& formats) {
+  std::string problem;
+  const auto converter = SvgConverter::load(problem);
+  if (!converter) return problem;
   std::set<std::string> used;
-  std::vector<std::string> drawings;
-  Converters converters;
+  std::vector<Drawing> drawings;
   for (const Picture& picture : pictures) {
     const std::string path = folder + "/" + file_name(picture.name, used);
-    std::string problem = drivers::write_text_file(path + ".csv", picture.plot.csv());
+    problem = drivers::write_text_file(path + ".csv",
+                                       picture.csv.empty() ? picture.plot.csv() : picture.csv);
     if (!problem.empty()) return problem;
-    for (const auto& [suffix, width_mm] :
-         {std::pair("-1col", kOneColumn_mm), std::pair("-2col", kTwoColumns_mm)}) {
-      drawings.push_back(path + suffix + ".drawing");
-      problem = drivers::write_text_file(drawings.back(), picture.plot.document(width_mm));
-      if (!problem.empty()) return problem;
-      for (const std::string& format : formats)
-        converters.convert(drawings.back(), path + suffix + "." + format, format);
+    for (const std::string& format : formats) {
+      drawings.push_back({&picture.plot, kOneColumn_mm, format, path + "-1col." + format});
+      drawings.push_back({&picture.plot, kTwoColumns_mm, format, path + "-2col." + format});
     }
   }
-  converters.wait(0);
-  std::error_code error;
-  for (const std::string& drawing : drawings) fs::remove(drawing, error);
-  return converters.problem();
+  return draw_all(*converter, drawings);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 
 #include <fmt/core.h>
@@ -65,6 +66,10 @@ std::string csv_text(std::string_view text) {
     out += c;
   }
   return out + '"';
+}
+
+std::string csv_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
 }
 
 std::string html_text(const std::string& text) {

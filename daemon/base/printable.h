@@ -24,6 +24,8 @@ std::string html_text(const std::string& text);
 /// Returns printable(text) as a cell of CSV: in quotes if it holds a comma or a quote, with quotes
 /// doubled.
 std::string csv_text(std::string_view text);
+/// Returns a number with nine digits for a cell of a CSV file; "" if it is not finite.
+std::string csv_number(double value);
 
 enum class Tone { good, doubtful, bad, strong };
 

@@ -280,8 +280,14 @@ std::string column_title(const std::string& label, const char* otherwise) {
              : fmt::format("{} ({})", label.substr(0, comma), label.substr(comma + 2));
 }
 
-std::string csv_number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.9g}", value) : "";
+/// Widens one axis about its middle, so that both have one scale.
+void use_one_scale(Area& a) {
+  const double of_x = (a.x.high - a.x.low) / a.width, of_y = (a.y.high - a.y.low) / a.height;
+  SvgAxis& axis = of_x < of_y ? a.x : a.y;
+  const double range = of_x < of_y ? of_y * a.width : of_x * a.height;
+  const double more = (range - (axis.high - axis.low)) / 2;
+  axis.low -= more;
+  axis.high += more;
 }
 
 }  // namespace
@@ -439,13 +445,14 @@ std::string SvgPlot::drawn(const std::string& head, int width, bool titled) cons
     if (b.statistics.count > 0) xs.push_back(b.x);
   std::string legend;
   titled = titled && !title_.empty();
-  double x = kLeft, top = kTop + (titled ? kLine : 0);
+  const double left = axes_ ? kLeft : kTop;
+  double x = left, top = kTop + (titled ? kLine : 0);
   for (const SvgSeries& s : series_) {
     if (s.name.empty()) continue;
     const double wide = 34 + kCharacter * static_cast<double>(s.name.size());
     if (legend.empty()) top += kLine;
-    if (x > kLeft && x + wide > width - kRight) {
-      x = kLeft;
+    if (x > left && x + wide > width - kRight) {
+      x = left;
       top += kLine;
     }
     legend += legend_entry(s, x, top - 5);
@@ -453,24 +460,28 @@ std::string SvgPlot::drawn(const std::string& head, int width, bool titled) cons
   }
   std::size_t longest = 0;
   for (const std::string& name : x_.categories) longest = std::max(longest, name.size());
-  const double across = width - kLeft - kRight;
+  const double across = width - left - kRight;
   const bool slanted = kCharacter * static_cast<double>(longest * x_.categories.size()) > across;
-  const double below = kBottom + (slanted ? 5 * static_cast<double>(longest) - 8 : 0) -
-                       (x_.label.empty() ? kLine : 0);
-  Area a{fitted(x_, xs),       fitted(y_, ys_within(fitted(x_, xs))), kLeft, top, across,
+  const double below = axes_ ? kBottom + (slanted ? 5 * static_cast<double>(longest) - 8 : 0) -
+                                   (x_.label.empty() ? kLine : 0)
+                             : kTop;
+  Area a{fitted(x_, xs),       fitted(y_, ys_within(fitted(x_, xs))), left, top, across,
          height_ - top - below};
+  if (!axes_) use_one_scale(a);
   a.bar = std::min(a.bar, kOfSpacing * least_spacing(bars, a));
 
   std::string out = head;
-  if (titled) out += text("ti", kLeft, kTop + 5, title_);
+  if (titled) out += text("ti", left, kTop + 5, title_);
   out += legend;
-  out += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">", a.left, a.top) + frame(a);
+  out += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">", a.left, a.top);
+  if (axes_) out += frame(a);
   out += fmt::format("<svg width=\"{:.1f}\" height=\"{:.1f}\" overflow=\"hidden\">", a.width,
                      a.height);
   for (const double rule : rules_) out += line("r", 0, a.py(rule), a.width, a.py(rule));
   for (const SvgBox& b : boxes_) out += draw(b, a);
   for (const SvgSeries& s : series_) out += draw(s, a);
   out += "</svg>";
+  if (!axes_) return out + "</g></svg>";
   out += fmt::format("<rect class=\"o\" width=\"{:.1f}\" height=\"{:.1f}\"/>", a.width, a.height);
   out += text("xe", a.width / 2, a.height + below - 8, a.x.label);
   out += fmt::format("<text class=\"xe\" transform=\"translate({} {:.1f}) rotate(-90)\">{}</text>",

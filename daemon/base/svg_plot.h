@@ -78,6 +78,8 @@ class SvgPlot {
 
   void add(SvgSeries series) { series_.push_back(std::move(series)); }
   void add(SvgBox box) { boxes_.push_back(std::move(box)); }
+  /// Leaves out the axes and draws x and y in one scale, as in a drawing of a building.
+  void leave_out_axes() { axes_ = false; }
   /// Adds a thin horizontal line across the plot.
   void add_rule(double y) { rules_.push_back(y); }
 
@@ -93,6 +95,8 @@ class SvgPlot {
   std::string csv() const;
 
   const std::string& title() const { return title_; }
+  /// Returns the height of svg() and document(), pixels at 96 per inch.
+  int height() const { return height_; }
 
  private:
   /// Returns the values that the y axis must hold, of all points within the x axis.
@@ -102,6 +106,7 @@ class SvgPlot {
   std::string title_;
   SvgAxis x_, y_;
   int width_, height_;
+  bool axes_ = true;
   std::vector<SvgSeries> series_;
   std::vector<SvgBox> boxes_;
   std::vector<double> rules_;
@@ -111,6 +116,7 @@ class SvgPlot {
 struct Picture {
   std::string name;
   SvgPlot plot;
+  std::string csv = {};  ///< the text of its CSV file; empty: SvgPlot::csv()
 };
 
 }  // namespace framewatch::daemon

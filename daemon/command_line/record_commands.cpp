@@ -38,7 +38,7 @@ void add_page_options(CLI::App* command, std::string& about, PictureFiles& figur
              "its\npoints as CSV");
   command
       ->add_option("--format", figures.formats,
-                   "formats of these files: svg, pdf, png (needs the package librsvg2-bin)")
+                   "formats of these files: svg, pdf, png (needs the package librsvg2-2)")
       ->delimiter(',')
       ->check(CLI::IsMember({"svg", "pdf", "png"}))
       ->default_str("svg");
@@ -146,13 +146,16 @@ void add_compare(CommandList& commands) {
   CompareArguments& arguments = commands.arguments<CompareArguments>();
   CLI::App* command = commands.add(
       "compare",
-      "compare runs of one building: stiffness, damping, drifts and transfer functions, with\nthe "
-      "differences in standard errors",
+      "compare runs of one building: stiffness, damping, modes, drifts and transfer "
+      "functions,\nwith "
+      "the differences in standard errors",
       "A source is a record file or raw log (with --config), a log of estimates, a folder of\n"
       "`framewatch record`, a configuration (its design), or PLACE@FROM..TO: the history of a\n"
       "configuration or folder between two times (UTC, or seconds since 1970).\nExit status: 0 no "
-      "stiffness differs; 1 one differs, or none could be judged; 2 bad usage or\ninput, or unlike "
-      "buildings.\nExamples:\n  framewatch compare run1.csv run2.csv --config table.toml --out "
+      "stiffness and no natural frequency differs; 1 one differs, or no\nstiffness could be "
+      "judged; "
+      "2 bad usage or input, or unlike buildings.\nExamples:\n  framewatch compare run1.csv "
+      "run2.csv --config table.toml --out "
       "compare.html\n"
       "  framewatch compare monday.lcmlog friday.lcmlog --threshold 5 --quiet");
   commands.reads_files(command
@@ -170,11 +173,13 @@ void add_compare(CommandList& commands) {
       ->add_option_function<double>(
           "--threshold",
           [&arguments](const double& percent) { arguments.limits.ratio = percent / 100; },
-          "least difference of a stiffness, % (default: 3 for frames, 20 for floor panels)")
+          "least difference of a stiffness, % (default: 3 for frames, 20 for floor panels);\nof a "
+          "natural "
+          "frequency half of that of a frame")
       ->check(CLI::Range(0.01, 100.0));
   command
       ->add_option("--errors", arguments.limits.errors,
-                   "least difference of a stiffness in standard errors")
+                   "least difference of a stiffness or frequency in standard errors")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   add_json(command, arguments.json);

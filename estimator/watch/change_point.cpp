@@ -4,19 +4,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/identify/solve/uncertainty.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 namespace {
 
+/// Degrees of freedom of a window's standard error, which comes from the scores of blocks.
+constexpr double kErrorFreedom = BatchMeans::kBlocks - 1;
+
 /// Sums over the first windows of a series; the difference of two gives any stretch.
 struct Sums {
   double count = 0, weight = 0, value = 0, square = 0;  ///< values minus the first one
+  double weight_square = 0;
 
   Sums operator-(const Sums& o) const {
-    return {count - o.count, weight - o.weight, value - o.value, square - o.square};
+    return {count - o.count, weight - o.weight, value - o.value, square - o.square,
+            weight_square - o.weight_square};
   }
   double scatter() const { return std::max(square - value * value / weight, 0.0); }
+  /// Returns the factor by which the variance of the mean exceeds 1 / weight, because the errors
+  /// that set the weights are estimates themselves. Source: P. Meier, Variance of a weighted mean,
+  /// Biometrics 9 (1953), 59.
+  double variance_of_weights() const {
+    return 1 + 4 / kErrorFreedom * (1 - weight_square / (weight * weight));
+  }
 };
 
 std::vector<Sums> running_sums(const std::vector<WindowValue>& values, double& origin) {
@@ -31,6 +43,7 @@ std::vector<Sums> running_sums(const std::vector<WindowValue>& values, double& o
       sum.weight += weight;
       sum.value += weight * off;
       sum.square += weight * off * off;
+      sum.weight_square += weight * weight;
     }
     out.push_back(sum);
   }
@@ -40,7 +53,8 @@ std::vector<Sums> running_sums(const std::vector<WindowValue>& values, double& o
 /// excess: variance of the values over what their errors predict.
 WindowMean mean(const Sums& s, double origin, double excess) {
   if (s.count == 0) return {kNaN, kNaN, 0};
-  return {origin + s.value / s.weight, std::sqrt(std::max(excess, 1.0) / s.weight),
+  return {origin + s.value / s.weight,
+          std::sqrt(std::max(excess, 1.0) * s.variance_of_weights() / s.weight),
           static_cast<int>(s.count)};
 }
 

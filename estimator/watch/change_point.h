@@ -16,7 +16,7 @@ struct WindowValue {
 };
 
 /// A mean weighted with 1 / std_error^2. Its error follows from the weights, or from the scatter if
-/// that is larger.
+/// that is larger, and from the errors of the weights.
 struct WindowMean {
   double value = 0, std_error = 0;
   int count = 0;

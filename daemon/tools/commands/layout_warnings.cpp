@@ -46,6 +46,23 @@ std::vector<estimator::SensorAxis> copied_to(const estimator::PipelineConfig& c,
   return out;
 }
 
+/// Returns the errors of the groups that reach the roof.
+TopErrors top_errors(const estimator::LayoutPrediction& p, const estimator::PipelineConfig& c) {
+  const estimator::ParameterTable table = c.parameters();
+  TopErrors out;
+  for (int i = 0; i < table.elements(); ++i) {
+    if (table[i].kind != estimator::ParameterKind::frame_stiffness ||
+        table[i].last_story != c.structure.stories)
+      continue;
+    const auto at = static_cast<std::size_t>(i);
+    const double error = std::hypot(p.window_error[at], p.design_error[at], p.sensor_error[at]);
+    const double damping = p.window_error[at + static_cast<std::size_t>(table.elements())];
+    out.stiffness = std::max(out.stiffness, std::isfinite(error) ? error : INFINITY);
+    out.damping = std::max(out.damping, std::isfinite(damping) ? damping : INFINITY);
+  }
+  return out;
+}
+
 /// An axis that is farther off the frames' directions measures both.
 constexpr double kOblique_deg = 15;
 constexpr double kSameSpot_m = 0.01, kParallel_rad = 0.02;
@@ -89,14 +106,20 @@ void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
   }
 }
 
+/// Warns of a roof without a channel, with the errors that one there would change.
 void free_top(const Config& config, const LayoutOutlook& outlook, std::vector<std::string>& out) {
-  const int stories = config.pipeline.structure.stories;
-  if (outlook.floors.empty() || outlook.floors.back() >= stories) return;
-  out.push_back(
-      fmt::format("no channel on the roof, floor {}: the stories above floor {} show only in the "
-                  "motion of that floor. If the ground moves only the first mode, their stiffness "
-                  "has errors of 15 % and their damping means nothing. Add a channel on the roof",
-                  stories, outlook.floors.back()));
+  if (!outlook.top) return;
+  const TopErrors &now = *outlook.top, &then = outlook.top_with_roof;
+  const auto within = [](double error) {
+    return error < 1 ? fmt::format("{:.2g} %", 100 * error) : std::string("unknown");
+  };
+  out.push_back(fmt::format(
+      "no channel on the roof, floor {}: the stories above floor {} show only in the motion of "
+      "that "
+      "floor. Expected errors of their stiffness and damping are {} and {}; with a channel on the "
+      "roof, {} and {}",
+      config.pipeline.structure.stories, outlook.floors.back(), within(now.stiffness),
+      within(now.damping), within(then.stiffness), within(then.damping)));
 }
 
 /// Returns the direction of an axis in rad, counter-clockwise from +x.
@@ -169,8 +192,10 @@ LayoutOutlook layout_outlook(const Config& config, int advise) {
     out.noise_configured = out.noise_configured && axis.noise_density > 0;
   }
   out.floors.assign(floors.begin(), floors.end());
-  const estimator::LayoutPrediction now =
-      predict_layout(c, estimator::noise_densities(c.axes), shaking);
+  const auto predicted = [&](const estimator::PipelineConfig& of) {
+    return predict_layout(of, estimator::noise_densities(of.axes), shaking);
+  };
+  const estimator::LayoutPrediction now = predicted(c);
   const estimator::ParameterTable table = c.parameters();
   for (int p = 0; p < table.size(); ++p) {
     const auto i = static_cast<std::size_t>(p);
@@ -183,17 +208,25 @@ LayoutOutlook layout_outlook(const Config& config, int advise) {
   const Weakest place = weakest(now, c);
   out.least_seen_loss = place.loss;
   out.weakest_story = place.story;
-  if (advise < 1 || floors.empty()) return out;
+  if (floors.empty()) return out;
+  const auto with_floor = [&](int floor) {
+    estimator::PipelineConfig more = c;
+    for (const estimator::SensorAxis& axis : copied_to(c, *floors.rbegin(), floor))
+      more.axes.push_back(axis);
+    return more;
+  };
+  if (!floors.contains(c.structure.stories)) {
+    const estimator::PipelineConfig more = with_floor(c.structure.stories);
+    out.top = top_errors(now, c);
+    out.top_with_roof = top_errors(predicted(more), more);
+  }
+  if (advise < 1) return out;
   for (int floor = 1; floor <= c.structure.stories; ++floor) {
     if (floors.contains(floor)) continue;
-    estimator::PipelineConfig more = c;
-    AdvisedFloor advised{floor, {}, 0};
-    for (const estimator::SensorAxis& axis : copied_to(c, *floors.rbegin(), floor)) {
-      advised.channels.push_back(axis.name);
-      more.axes.push_back(axis);
-    }
-    advised.least_seen_loss =
-        weakest(predict_layout(more, estimator::noise_densities(more.axes), shaking), more).loss;
+    const estimator::PipelineConfig more = with_floor(floor);
+    AdvisedFloor advised{floor, {}, weakest(predicted(more), more).loss};
+    for (std::size_t a = c.axes.size(); a < more.axes.size(); ++a)
+      advised.channels.push_back(more.axes[a].name);
     out.advised.push_back(std::move(advised));
   }
   std::stable_sort(out.advised.begin(), out.advised.end(),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct AdvisedFloor {
   double least_seen_loss;             ///< LayoutOutlook::least_seen_loss with this floor
 };
 
+/// Expected errors of the stories above the highest measured floor, relative; of the worst group.
+struct TopErrors {
+  double stiffness = 0;  ///< of one window, of the design and of sensors together
+  double damping = 0;    ///< of one window
+};
+
 /// Expected accuracy of a building with sensors on some floors, from its design.
 struct LayoutOutlook {
   std::vector<int> floors;  ///< measured
@@ -32,6 +39,8 @@ struct LayoutOutlook {
   double least_seen_loss = 0;
   int weakest_story = 0;
   std::vector<AdvisedFloor> advised;  ///< best first
+  std::optional<TopErrors> top;       ///< without a channel on the roof; empty: it has one
+  TopErrors top_with_roof;            ///< with one there, if top is set
 };
 
 /// Predicts accuracy from the design. `config` must have groups of stories. `advise`: largest

@@ -21,8 +21,9 @@ struct CompareArguments {
   bool quiet = false;
 };
 
-/// Runs `framewatch compare`. Returns the exit code: 0 when no stiffness differs, 1 when one does
-/// or none could be judged, kBadInput when a source cannot be read or the buildings are unlike.
+/// Runs `framewatch compare`. Returns the exit code: 0 when no stiffness and no natural frequency
+/// differs, 1 when one does or no stiffness could be judged, kBadInput when a source cannot be read
+/// or the buildings are unlike.
 int compare(const CompareArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -65,7 +65,9 @@ class RunReader {
       read_design();
     else
       read_log_or_record();
-    return problems_.size() == before;
+    if (problems_.size() != before) return false;
+    run_.modes = run_modes(run_.report, run_.values);
+    return true;
   }
 
   ComparedRun take() { return std::move(run_); }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/base/record_file_arguments.h"
+#include "daemon/tools/compare/run_modes.h"
 #include "daemon/tools/report/session_report.h"
 #include "estimator/watch/change_point.h"
 
@@ -21,9 +22,14 @@ struct ComparedRun {
   /// By parameter: the mean of windows that do not overlap; of an element that changed, of those
   /// after its last change. NaN without windows; count 0 and error 0 for a design.
   std::vector<estimator::WindowMean> values;
+  RunModes modes;
   std::vector<std::string> notes;  ///< for the reader, one sentence each
 
   const parameter_table_t& table() const { return report.estimates.table; }
+  /// Returns the transfer functions after a change within the run, or those of a run without one.
+  const std::vector<TransferFunction>& transfer() const {
+    return report.transfer_after.empty() ? report.transfer : report.transfer_after;
+  }
 };
 
 /// Options for reading a source.

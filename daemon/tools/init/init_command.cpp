@@ -66,20 +66,30 @@ int refuse_answers(const InitReading& reading) {
                           count == 1 ? "" : "s"));
 }
 
+/// Returns a record and its options as arguments of `report --raw`, where --format is that of
+/// pictures.
+std::string raw_arguments(std::string record) {
+  const std::string format = " --format ";
+  if (const std::size_t at = record.find(format); at != std::string::npos)
+    record.replace(at, format.size(), " --raw-format ");
+  return record;
+}
+
 std::string next_steps(const BuildingPlan& plan, const std::string& path) {
   const std::string config = shell_word(path);
   std::string out = fmt::format("{}: written. Next steps:\n  framewatch check {}\n", path, config);
   if (plan.record_files > 1)
     out += fmt::format(
-        "  framewatch convert FILES station.lcmlog   (the {})\n"
-        "  framewatch replay {} station.lcmlog --out estimates.lcmlog\n"
-        "  framewatch report estimates.lcmlog --out report.html\n",
+        "  framewatch convert FILES station.lcmlog   (the {0})\n"
+        "  framewatch replay {1} station.lcmlog --out estimates.lcmlog\n"
+        "  framewatch report estimates.lcmlog --config {1} --raw station.lcmlog --out "
+        "report.html\n",
         plan.record, config);
   else if (!plan.record.empty())
     out += fmt::format(
-        "  framewatch replay {} {} --out estimates.lcmlog\n"
-        "  framewatch report estimates.lcmlog --out report.html\n",
-        config, plan.record);
+        "  framewatch replay {0} {1} --out estimates.lcmlog\n"
+        "  framewatch report estimates.lcmlog --config {0} --raw {2} --out report.html\n",
+        config, plan.record, raw_arguments(plan.record));
   else if (plan.channels.front().column.source.empty())
     out += fmt::format(
         "  framewatch replay {} RECORD --out estimates.lcmlog   (its columns have the "

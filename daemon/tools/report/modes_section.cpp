@@ -1,175 +1,29 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <complex>
-#include <iterator>
 
 #include <fmt/core.h>
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/words.h"
+#include "daemon/tools/report/mode_pictures.h"
 #include "daemon/tools/report/session_report.h"
 #include "estimator/numeric/nan.h"
-#include "estimator/structure/story_groups.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kMostPictures = 6;
-constexpr double kPictureWide = 235, kPictureHigh = 270, kPictureEdge = 12,
-                 kPictureTitle = 36;  // px
-/// Largest displacement in a picture, as a share of the building's height.
-constexpr double kDrawnMotion = 0.13;
-/// Oblique projection of the depth y: to the right and upward.
-constexpr double kDepthRight = 0.42, kDepthUp = 0.28;
 
-struct Point {
-  double x, y;  ///< y upward
-};
-
-/// The crossings of a building's frames, drawn as a wire model. A building with frames along one
-/// direction only gets a second line, so that it has a width.
-class WireModel {
- public:
-  explicit WireModel(const estimator::Structure& s) : s_(s) {
-    double height = 0;
-    levels_.push_back(0);
-    for (const double story : s.story_height) levels_.push_back(height += story);
-    for (int f = 0; f < s.n(); ++f) lines_y_.push_back(line_position(s, f));
-    for (int f = 0; f < s.m(); ++f) lines_x_.push_back(line_position(s, s.n() + f));
-    const double width = 0.4 * height;
-    if (s.m() == 0) lines_x_ = {0, width};
-    if (s.n() == 0) lines_y_ = {0, width};
-    amplitude_ = kDrawnMotion * height;
-  }
-
-  /// Returns the place of a crossing under a shape; floor 0 is the base.
-  Point at(std::size_t floor, std::size_t x, std::size_t y, const Eigen::VectorXd& shape) const {
-    const double u = motion(floor, s_.n() > 0 ? static_cast<int>(y) : -1, shape);
-    const double v = motion(floor, s_.m() > 0 ? s_.n() + static_cast<int>(x) : -1, shape);
-    const double depth = lines_y_[y] + v;
-    return {lines_x_[x] + u + kDepthRight * depth, levels_[floor] + kDepthUp * depth};
-  }
-
-  /// Returns the ends of all columns and beams.
-  std::vector<std::array<Point, 2>> lines(const Eigen::VectorXd& shape) const {
-    std::vector<std::array<Point, 2>> out;
-    for (std::size_t floor = 0; floor < levels_.size(); ++floor)
-      for (std::size_t x = 0; x < lines_x_.size(); ++x)
-        for (std::size_t y = 0; y < lines_y_.size(); ++y) {
-          const Point here = at(floor, x, y, shape);
-          if (floor + 1 < levels_.size()) out.push_back({here, at(floor + 1, x, y, shape)});
-          if (x + 1 < lines_x_.size()) out.push_back({here, at(floor, x + 1, y, shape)});
-          if (y + 1 < lines_y_.size()) out.push_back({here, at(floor, x, y + 1, shape)});
-        }
-    return out;
-  }
-
- private:
-  double motion(std::size_t floor, int frame, const Eigen::VectorXd& shape) const {
-    if (floor == 0 || frame < 0) return 0;
-    return amplitude_ * shape[s_.dof(static_cast<int>(floor), frame)];
-  }
-
-  const estimator::Structure& s_;
-  std::vector<double> levels_, lines_x_, lines_y_;
-  double amplitude_ = 0;
-};
-
-/// Returns the shape of a mode with the measured motion at the channels that sit on a frame, scaled
-/// and turned to fit; NaN elsewhere.
-Eigen::VectorXd measured_places(const RecordModes& m, const estimator::NaturalMode& mode,
-                                const estimator::MeasuredMode& measured) {
-  const Eigen::VectorXcd at_channels = m.weights * mode.shape;
-  const std::complex<double> factor =
-      measured.shape.dot(at_channels) / measured.shape.squaredNorm();
-  Eigen::VectorXd out = Eigen::VectorXd::Constant(mode.shape.size(), estimator::kNaN);
-  for (Eigen::Index c = 0; c < m.weights.rows(); ++c) {
-    Eigen::Index dof = 0;
-    if (m.weights.row(c).maxCoeff(&dof) == 1) out[dof] = (factor * measured.shape[c]).real();
-  }
-  return out;
-}
-
-/// Draws a mode: the building at rest in gray, its shape in blue, measured channels as rings.
-std::string picture(const RecordModes& m, const std::string& title, const std::string& subtitle,
-                    const estimator::NaturalMode& mode, const estimator::MeasuredMode* measured) {
-  const WireModel wires(m.structure);
-  const Eigen::VectorXd shape = mode.shape.real();
-  const auto rest = wires.lines(Eigen::VectorXd::Zero(shape.size()));
-  const auto moved = wires.lines(shape), back = wires.lines(-shape);
-  Point low = rest.front()[0], high = low;
-  for (const auto* lines : {&rest, &moved, &back})
-    for (const auto& line : *lines)
-      for (const Point& p : line) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-      }
-  const double scale =
-      std::min((kPictureWide - 2 * kPictureEdge) / std::max(high.x - low.x, 1e-9),
-               (kPictureHigh - kPictureTitle - kPictureEdge) / std::max(high.y - low.y, 1e-9));
-  const auto px = [&](const Point& p) {
-    return Point{kPictureWide / 2 + scale * (p.x - (low.x + high.x) / 2),
-                 kPictureHigh - kPictureEdge - scale * (p.y - low.y)};
-  };
-  std::string out = fmt::format(
-      "<svg class=\"plot\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
-      "aria-label=\"{2}\"><text class=\"ti\" x=\"{3}\" y=\"14\">{2}</text><text x=\"{3}\" "
-      "y=\"29\">{4}</text>",
-      kPictureWide, kPictureHigh, html_text(title), kPictureEdge, html_text(subtitle));
-  for (const auto& [lines, style] : {std::pair{&rest, "t s6"}, std::pair{&moved, "l s0"}}) {
-    out += fmt::format("<path class=\"{}\" d=\"", style);
-    for (const auto& [from, to] : *lines) {
-      const Point a = px(from), b = px(to);
-      fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}L{:.1f} {:.1f}", a.x, a.y, b.x, b.y);
-    }
-    out += "\"/>";
-  }
-  if (measured != nullptr) {
-    const Eigen::VectorXd places = measured_places(m, mode, *measured);
-    const estimator::Structure& s = m.structure;
-    for (int story = 1; story <= s.stories; ++story)
-      for (int f = 0; f < s.frames(); ++f) {
-        const double value = places[s.dof(story, f)];
-        if (!std::isfinite(value)) continue;
-        Eigen::VectorXd with = shape;
-        with[s.dof(story, f)] = value;
-        const auto line = static_cast<std::size_t>(f < s.n() ? f : f - s.n());
-        const Point at = px(wires.at(static_cast<std::size_t>(story), f < s.n() ? 0 : line,
-                                     f < s.n() ? line : 0, with));
-        fmt::format_to(std::back_inserter(out),
-                       "<circle class=\"b s1\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>", at.x, at.y);
-      }
-  }
-  return out + "</svg>\n";
-}
-
+/// Returns the pictures of the lowest modes.
 std::string pictures(const RecordModes& m) {
-  std::vector<std::string> out;
-  std::size_t number = 0;
-  bool rings = false;
-  for (const ModeRow& row : m.rows) {
-    ++number;
-    if ((row.identified < 0 && row.design < 0) || out.size() == kMostPictures) continue;
-    const bool identified = row.identified >= 0;
-    const estimator::NaturalMode& mode =
-        identified ? m.identified.modes[static_cast<std::size_t>(row.identified)]
-                   : m.design.modes[static_cast<std::size_t>(row.design)];
-    const estimator::MeasuredMode* measured =
-        row.measured < 0 ? nullptr : &m.measured[static_cast<std::size_t>(row.measured)];
-    rings = rings || measured != nullptr;
-    out.push_back(picture(m,
-                          fmt::format("mode {}: {:.3f} Hz, {:.2f} %", number, mode.frequency_hz,
-                                      100 * mode.damping_ratio),
-                          identified ? motion_words(mode) : motion_words(mode) + " (design)", mode,
-                          measured));
-  }
+  std::vector<Picture> out = mode_pictures(m, "");
   if (out.empty()) return "";
-  return html_figure(out, std::string("Shapes of the lowest modes, blue, beside the building at "
-                                      "rest, gray. Frequency and damping ratio of the ") +
-                              (m.identified.modes.empty() ? "design." : "identified model.") +
-                              (rings ? " Rings: the measured shape at the channels." : ""));
+  if (out.size() > kMostPictures) out.erase(out.begin() + kMostPictures, out.end());
+  return html_figure(out,
+                     std::string("Shapes of the lowest modes beside the building at rest, "
+                                 "gray. Frequency and damping ratio of the ") +
+                         (m.identified.modes.empty() ? "design." : "identified model.") +
+                         (m.measured.empty() ? "" : " Rings: the measured shape at the channels."));
 }
 
 std::string modes_table(const RecordModes& m) {

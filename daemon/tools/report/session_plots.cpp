@@ -10,6 +10,7 @@
 #include "daemon/base/svg_plot.h"
 #include "daemon/base/words.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
+#include "daemon/tools/report/mode_pictures.h"
 #include "daemon/tools/report/session_report.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"
@@ -360,6 +361,8 @@ std::vector<Picture> session_pictures(const SessionReport& r) {
   add(floor_pictures(r));
   add(loop_pictures(r));
   add(transfer_pictures(r));
+  for (const StageModes& of : r.modes)
+    add(mode_pictures(of.modes, r.compared[of.stage].after ? "-after" : ""));
   add(motion_pictures(r));
   add(history_pictures(r, true));
   add(history_pictures(r, false));

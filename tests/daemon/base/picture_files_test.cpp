@@ -3,13 +3,14 @@
 
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
+
+#include "daemon/base/svg_converter.h"
 
 namespace framewatch::daemon {
 namespace picture_files_test {
@@ -42,14 +43,15 @@ class PictureFilesTest : public testing::Test {
     return text.str();
   }
   static bool can_convert() {
-    return std::system("rsvg-convert --version > /dev/null 2>&1") == 0;  // NOLINT(cert-env33-c)
+    std::string problem;
+    return SvgConverter::load(problem).has_value();
   }
 
   std::string directory_;
 };
 
 TEST_F(PictureFilesTest, WritesEveryFormatInBothWidths) {
-  if (!can_convert()) GTEST_SKIP() << "rsvg-convert is not installed (librsvg2-bin)";
+  if (!can_convert()) GTEST_SKIP() << "librsvg is not installed (librsvg2-2)";
   const std::string folder = directory_ + "/figures";
   ASSERT_EQ(write_pictures(pictures(), {folder, {"svg", "pdf", "png"}}), "");
   std::set<std::string> wanted;
@@ -84,13 +86,31 @@ TEST_F(PictureFilesTest, RefusesAFolderWithFilesAndLeavesIt) {
   EXPECT_EQ(names(), std::set<std::string>{"mine.txt"});
 }
 
-TEST_F(PictureFilesTest, SaysWhatIsMissingAndLeavesNothing) {
-  const std::string path = std::getenv("PATH");
-  ::setenv("PATH", "/nowhere", 1);
-  const std::string problem = write_pictures(pictures(), {directory_ + "/figures", {"pdf"}});
-  ::setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(problem, "pictures need the program rsvg-convert: install the package librsvg2-bin");
-  EXPECT_EQ(names(), std::set<std::string>{});
+TEST_F(PictureFilesTest, SamePictureHasTheSameBytes) {
+  if (!can_convert()) GTEST_SKIP() << "librsvg is not installed (librsvg2-2)";
+  for (const char* folder : {"/one", "/other"})
+    ASSERT_EQ(write_pictures(pictures(), {directory_ + folder, {"svg", "pdf", "png"}}), "");
+  for (const auto& entry : fs::directory_iterator(directory_ + "/one"))
+    EXPECT_EQ(text_of(entry.path()),
+              text_of(directory_ + "/other/" + entry.path().filename().string()))
+        << entry.path();
+}
+
+TEST_F(PictureFilesTest, SaysWhatFailedAndLeavesNothing) {
+  std::string problem;
+  const auto converter = SvgConverter::load(problem);
+  if (!converter) {
+    EXPECT_EQ(write_pictures(pictures(), {directory_ + "/figures", {"pdf"}}), problem);
+    EXPECT_NE(problem.find("install the package librsvg2-2"), std::string::npos);
+    EXPECT_EQ(names(), std::set<std::string>{});
+    return;
+  }
+  const std::string absent = directory_ + "/absent/x.pdf";
+  EXPECT_EQ(converter->convert(pictures()[0].plot.document(85), 321, 240, "pdf", absent)
+                .rfind(absent + ": ", 0),
+            0u);
+  EXPECT_NE(converter->convert("<svg", 321, 240, "pdf", directory_ + "/x.pdf").find("librsvg: "),
+            std::string::npos);
 }
 
 TEST(PageName, OtherFormatsAreRefused) {

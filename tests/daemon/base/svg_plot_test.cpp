@@ -2,6 +2,8 @@
 #include "daemon/base/svg_plot.h"
 
 #include <cmath>
+#include <cstdio>
+#include <utility>
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -48,6 +50,24 @@ TEST(SvgPlot, NanBreaksALine) {
   SvgPlot plot("", {"x"}, {"y"});
   plot.add({"", 0, SvgMark::line, {0, 1, 2, 3, 4}, {0, 1, estimator::kNaN, 1, 0}});
   EXPECT_EQ(count(plot.svg(), "<polyline"), 2);
+}
+
+TEST(SvgPlot, WithoutAxesASquareIsDrawnAsASquare) {
+  for (const auto& [width, height] : {std::pair(600, 200), std::pair(200, 600)}) {
+    SvgPlot plot("", {"x"}, {"y"}, width, height);
+    plot.leave_out_axes();
+    plot.add({"", 0, SvgMark::line, {0, 3, 3}, {0, 0, 3}});
+    const std::string svg = plot.svg();
+    const std::size_t at = svg.find("points=\"");
+    double x1 = 0, y1 = 0, x2 = 0, y2 = 0, x3 = 0, y3 = 0;
+    ASSERT_NE(at, std::string::npos);
+    ASSERT_EQ(std::sscanf(svg.c_str() + at, "points=\"%lf,%lf %lf,%lf %lf,%lf", &x1, &y1, &x2, &y2,
+                          &x3, &y3),
+              6);
+    EXPECT_GT(x2 - x1, 100);
+    EXPECT_NEAR(x2 - x1, y2 - y3, 0.2);
+    EXPECT_EQ(count(svg, "<text"), 0);
+  }
 }
 
 TEST(SvgPlot, LongLinesKeepTheirExtremesAndStaySmall) {

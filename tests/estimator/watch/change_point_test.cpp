@@ -24,6 +24,30 @@ std::vector<WindowValue> series(int count, Value value, std::uint64_t seed = 1, 
   return out;
 }
 
+TEST(WindowMean, ItsErrorIncludesThatOfTheWeights) {
+  // GIVEN windows whose errors are estimates from as many blocks as the estimator's
+  constexpr int kSeries = 4000, kWindows = 8, kFreedom = 19;
+  constexpr double kAgree = 0.05;  // relative
+  Random random(5);
+  double squares = 0, told = 0;
+  for (int i = 0; i < kSeries; ++i) {
+    auto values = series(
+        kWindows, [](int) { return 1.0; }, static_cast<std::uint64_t>(i + 1));
+    for (WindowValue& v : values) {
+      double chi = 0;
+      for (int n = 0; n < kFreedom; ++n) chi += std::pow(random.normal(), 2);
+      v.std_error = kError * std::sqrt(chi / kFreedom);
+    }
+    const WindowMean mean = mean_of(values, 0, values.size());
+    squares += std::pow((mean.value - 1) / mean.std_error, 2);
+    told += mean.std_error;
+  }
+  // THEN the mean's error is not too small, and at most as much larger as the scatter makes it
+  EXPECT_LT(std::sqrt(squares / kSeries), 1 + kAgree);
+  EXPECT_GT(std::sqrt(squares / kSeries), 0.9);
+  EXPECT_GT(told / kSeries, kError / std::sqrt(kWindows));
+}
+
 TEST(ChangePoint, IsFoundWithItsSizeErrorAndPlace) {
   const auto values = series(12, [](int i) { return i < 4 ? 1.0 : i == 4 ? 0.97 : 0.9; });
   const auto found = find_change(values, 0.05);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/commands/layout_warnings.h"
 
+#include <cmath>
+
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -94,6 +97,20 @@ TEST(LayoutWarnings, NameAGroupThatNoiseHides) {
 TEST(LayoutWarnings, NameARoofWithoutAChannel) {
   const CheckReport r = checked(level(0) + level(4) + level(7));
   EXPECT_TRUE(warns(r, "no channel on the roof, floor 10")) << all_of(r);
+  // The errors are those that check predicts for this building and for one with the channel.
+  ASSERT_TRUE(r.layout && r.layout->top);
+  const CheckReport with = checked(level(0) + level(4) + level(7) + level(10));
+  ASSERT_TRUE(with.layout);
+  EXPECT_FALSE(with.layout->top);
+  EXPECT_FALSE(warns(with, "roof")) << all_of(with);
+  double worst = 0;
+  for (const GroupOutlook& g : with.layout->groups)
+    if (g.parameter.find("to10") != std::string::npos)
+      worst = std::max(worst, std::hypot(g.window_error, g.design_error, g.sensor_error));
+  EXPECT_GT(worst, 0);
+  EXPECT_DOUBLE_EQ(r.layout->top_with_roof.stiffness, worst);
+  EXPECT_TRUE(warns(r, fmt::format("with a channel on the roof, {:.2g} % and ", 100 * worst)))
+      << all_of(r);
 }
 
 TEST(LayoutWarnings, NameOnlyGroupsWhoseErrorIsLarge) {

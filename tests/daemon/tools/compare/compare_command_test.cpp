@@ -29,8 +29,11 @@ constexpr double kLoss = 0.15;        // of frame y2 in story 1 of the damaged r
 constexpr double kLossError = 0.005;  // of its measured size
 constexpr double kWithinErrors =
     3;  // standard errors that nearly all undamaged elements are within
-constexpr double kShareWithin = 0.9;    // of them
-constexpr double kTransferError = 0.1;  // of the formula for the error of a transfer function
+constexpr double kShareWithin = 0.9;                           // of them
+constexpr double kLeastCoverage = 0.90, kMostCoverage = 0.99;  // of two standard errors
+constexpr double kSameFrequency = 0.001;  // relative, of the well known modes of undamaged runs
+constexpr double kFrequencyLoss = 0.02;   // least relative, of mode 1 of the softened building
+constexpr double kTransferError = 0.1;    // of the formula for the error of a transfer function
 
 std::string text_of(const std::string& path) {
   std::ifstream file(path);
@@ -39,8 +42,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// Three runs of the paper's building in different earthquakes, the last one with a loss; made
-/// once.
+/// Four runs of the paper's building in different earthquakes, the last two with losses; made once.
 struct Runs {
   std::string directory, config;
 
@@ -55,6 +57,7 @@ struct Runs {
     make("run1.csv", 1, 2000e3);
     make("run2.csv", 2, 2000e3);
     make("damaged.csv", 3, (1 - kLoss) * 2000e3);
+    make("softened.csv", 4, 0.5 * 2000e3);
   }
   ~Runs() { fs::remove_all(directory); }
 
@@ -111,6 +114,41 @@ TEST(Compare, TwoRunsOfOneBuildingDoNotDiffer) {
       << verdict_sentences(c)[0];
 }
 
+TEST(Compare, DifferencesOfRunsOfOneBuildingAreWithinTheirErrors) {
+  constexpr int kRuns = 20;
+  std::vector<std::vector<estimator::WindowMean>> means;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    runs().make("covered.csv", 100 + seed, 2000e3);
+    ReplayArguments replayed;
+    replayed.config = runs().config;
+    replayed.inputs = {runs().path("covered.csv")};
+    replayed.quiet = true;
+    replayed.out = runs().path("covered.lcmlog");
+    ASSERT_EQ(replay(replayed), 0);
+    std::vector<drivers::Problem> problems;
+    const auto estimates = read_session_estimates(replayed.out, problems);
+    ASSERT_TRUE(estimates);
+    means.emplace_back();
+    for (std::size_t p = 0; p < estimates->parameters(); ++p) {
+      const auto windows = separate_windows(*estimates, p);
+      means.back().push_back(estimator::mean_of(windows, 0, windows.size()));
+    }
+  }
+  double covered = 0, all = 0;
+  for (std::size_t a = 0; a < means.size(); ++a)
+    for (std::size_t b = a + 1; b < means.size(); ++b)
+      for (std::size_t p = 0; p < means[a].size(); ++p) {
+        const double error = estimator::ratio_error(means[a][p], means[b][p]);
+        if (!(error > 0)) continue;
+        ++all;
+        covered += std::abs(means[b][p].value / means[a][p].value - 1) < 2 * error ? 1 : 0;
+      }
+  EXPECT_GT(all, 9000);
+  RecordProperty("coverage", std::to_string(covered / all));
+  EXPECT_GT(covered / all, kLeastCoverage);
+  EXPECT_LT(covered / all, kMostCoverage);
+}
+
 TEST(Compare, FindsALossWithItsSizeAndPlace) {
   EXPECT_EQ(compare(runs().arguments("run1.csv", "damaged.csv")), 1);
   const Comparison c = runs().compared("run1.csv", "damaged.csv");
@@ -123,6 +161,67 @@ TEST(Compare, FindsALossWithItsSizeAndPlace) {
   }
   EXPECT_NE(verdict_sentences(c)[0].find("north wall (y2) of story 1 has 15."), std::string::npos)
       << verdict_sentences(c)[0];
+}
+
+TEST(Compare, ModesOfTwoRunsAgree) {
+  const Comparison c = runs().compared("run1.csv", "run2.csv");
+  EXPECT_EQ(c.known_modes().size(), 20u);
+  // In the fourth mode floors shear, which 40 s show to 0.06 % only.
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ModeDifference& d = c.modes[0][i];
+    EXPECT_EQ(d.later, static_cast<int>(i));
+    EXPECT_TRUE(d.frequency.judged) << i;
+    EXPECT_LT(std::abs(d.frequency.ratio), kSameFrequency) << i;
+    EXPECT_LT(d.frequency.errors(), kWithinErrors) << i;
+    EXPECT_LT(d.damping.errors(), kWithinErrors) << i;
+    EXPECT_GT(d.mac, 0.999) << i;
+  }
+  EXPECT_NE(verdict_sentences(c)[1].find("natural frequencies of run2.csv could be judged and are "
+                                         "those of run1.csv"),
+            std::string::npos)
+      << verdict_sentences(c)[1];
+  const std::string text = comparison_text(c);
+  for (const char* wanted : {"1 (", "frequency, Hz", "damping ratio, %", "MAC",
+                             "peak story drift, mm", "transfer function"})
+    EXPECT_NE(text.find(wanted), std::string::npos) << wanted;
+}
+
+TEST(Compare, ALowerFrequencyHasASentenceAndDecidesTheExitStatus) {
+  Comparison c = runs().compared("run1.csv", "softened.csv");
+  const Difference& first = c.modes[0][0].frequency;
+  EXPECT_TRUE(first.different);
+  EXPECT_LT(first.ratio, -kFrequencyLoss);
+  EXPECT_NE(verdict_sentences(c)[1].find(") lower, "), std::string::npos)
+      << verdict_sentences(c)[1];
+  for (Difference& d : c.differences[0]) d.different = false;
+  EXPECT_TRUE(c.different()) << "by its frequencies alone";
+  EXPECT_EQ(verdict_sentences(c)[0].rfind("softened.csv differs in frequency from run1.csv", 0), 0u)
+      << verdict_sentences(c)[0];
+  for (ModeDifference& d : c.modes[0]) d.frequency.different = false;
+  EXPECT_FALSE(c.different());
+}
+
+TEST(Compare, RunsWithoutSamplesHaveTheModesOfTheirStiffness) {
+  std::vector<std::string> problems;
+  const auto record = read_run(runs().path("run1.csv"), {runs().config, {}}, problems);
+  const auto design = read_run(runs().config, {}, problems);
+  ASSERT_TRUE(record && design);
+  // The design gives the frames and leaves the floor panels open.
+  const estimator::NaturalMode& first = design->modes.modes.front().natural;
+  EXPECT_GT(first.frequency_error_hz, 0);
+  EXPECT_LT(first.frequency_error_hz, kSameFrequency * first.frequency_hz);
+  EXPECT_TRUE(std::isfinite(record->modes.modes.front().measured_hz));
+  SessionReport only_log = record->report;
+  only_log.modes.clear();
+  const RunModes of_log = run_modes(only_log, record->values);
+  ASSERT_EQ(of_log.modes.size(), record->modes.modes.size());
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(of_log.modes[i].natural.frequency_hz / record->modes.modes[i].natural.frequency_hz,
+                1, kSameFrequency);
+    EXPECT_GT(of_log.modes[i].natural.frequency_error_hz, 0);
+  }
+  only_log.config.reset();
+  EXPECT_EQ(run_modes(only_log, record->values).none, "it has no configuration; give --config");
 }
 
 TEST(Compare, ThresholdDecidesTheExitStatus) {
@@ -139,14 +238,16 @@ TEST(Compare, WritesAPageAndJson) {
   EXPECT_EQ(compare(a), 1);
   const std::string page = text_of(a.out);
   EXPECT_LT(page.find("damaged.csv differs from run1.csv"), page.find("<h1>"));
-  for (const char* wanted : {"story 1, north wall", "Peak story drifts", "Transfer functions",
-                             "Damping", "MN/m", "Provenance", "<nav"})
+  for (const char* wanted :
+       {"story 1, north wall", "Peak story drifts", "Transfer functions", "Damping", "MN/m",
+        "Provenance", "<nav", "<h2>Modes</h2>", "damping ratio, %", "MAC with damaged.csv"})
     EXPECT_NE(page.find(wanted), std::string::npos) << wanted;
   for (const char* unwanted : {">nan", "\"nan", " nan", "inf<", "<script"})
     EXPECT_EQ(page.find(unwanted), std::string::npos) << unwanted;
   const std::string json = comparison_json(runs().compared("run1.csv", "damaged.csv"));
   for (const char* wanted : {"\"framewatch.compare/1\"", "\"different\": true", "\"drift_ratio\"",
-                             "\"std_errors\"", "\"place\": \"story 1, north wall\""})
+                             "\"std_errors\"", "\"place\": \"story 1, north wall\"",
+                             "\"frequency_ratio\": 0.015", "\"mac\"", "\"measured_hz\""})
     EXPECT_NE(json.find(wanted), std::string::npos) << wanted;
   a.out = runs().path("page.png");
   EXPECT_EQ(compare(a), 2);

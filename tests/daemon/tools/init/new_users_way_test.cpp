@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <sstream>
@@ -125,6 +126,50 @@ TEST_F(NewUsersWay, DoesNotGuessAmbiguousTitles) {
   EXPECT_NE(said.out.find("A2X1             floor 2, frame x1, along y"), std::string::npos)
       << said.out;
   check_replay_report();
+}
+
+TEST_F(NewUsersWay, LeadsFromALoggersFileToAClientsPdfWithModesInFourCommands) {
+  // GIVEN a logger's file with German titles and time stamps, a comma in every number
+  log_as("s/base-\\([xy]\\)/Fundament \\U\\1/g; s/F\\([12]\\)-\\([XY][12]\\)/\\1. OG \\L\\2/g");
+  ASSERT_EQ(
+      shell("awk -F';' -v OFS=';' 'NR > 1 { t = $1; sub(/,/, \".\", t); "
+            "$1 = sprintf(\"2026-11-21 14:%02d:%07.4f\", t / 60, t % 60); sub(/\\./, \",\", $1) } "
+            "{ print }' logger.csv >stamped.csv")
+          .status,
+      0);
+  const std::string head = test::read_file(directory_.path("stamped.csv")).substr(0, 400);
+  ASSERT_NE(head.find("Fundament X [g];Fundament Y [g];1. OG y1 [g]"), std::string::npos) << head;
+  ASSERT_NE(head.find("\n2026-11-21 14:00:00,0000;"), std::string::npos) << head;
+  // WHEN the commands of docs/laboratory.md are given, those after the first as init prints them
+  const test::ShellResult init =
+      shell(std::string("$F init --record stamped.csv --zone +01:00 --titles frames ") + kShape);
+  ASSERT_EQ(init.status, 0) << init.err;
+  const std::string record = "stamped.csv --zone +01:00";
+  const std::string replay =
+      "framewatch replay building.toml " + record + " --out estimates.lcmlog";
+  const std::string report = "framewatch report estimates.lcmlog --config building.toml --raw " +
+                             record + " --out report.html";
+  for (const std::string& step : {replay, report})
+    EXPECT_NE(init.out.find("\n  " + step + "\n"), std::string::npos) << init.out;
+  EXPECT_EQ(shell("$F check building.toml").status, 0) << "without an edit";
+  ASSERT_EQ(shell("$F" + replay.substr(10)).status, 0);
+  const test::ShellResult reported = shell("$F" + report.substr(10) + " --figures figures");
+  if (reported.err.find("librsvg2-2") != std::string::npos) GTEST_SKIP() << reported.err;
+  ASSERT_EQ(reported.status, 0) << reported.err;
+  // THEN the page has the modes, and the folder of figures has a picture of each
+  const std::string page = test::read_file(directory_.path("report.html"));
+  EXPECT_NE(page.find(">Modes</h2>"), std::string::npos);
+  EXPECT_NE(page.find(">mode 6 ("), std::string::npos) << "the last one with a picture";
+  EXPECT_EQ(shell("ls figures/mode-1.csv figures/mode-8-2col.svg").status, 0);
+  // and a browser prints it
+  if (shell("command -v chromium").status != 0) GTEST_SKIP() << "no chromium prints the page";
+  const test::ShellResult printed = shell(
+      "chromium --no-sandbox --headless --no-pdf-header-footer --print-to-pdf=report.pdf "
+      "report.html");
+  if (printed.status != 0) GTEST_SKIP() << "chromium does not start here: " << printed.err;
+  const std::string pdf = test::read_file(directory_.path("report.pdf"));
+  EXPECT_EQ(pdf.rfind("%PDF-", 0), 0u);
+  EXPECT_GT(std::count(pdf.begin(), pdf.end(), '\n'), 100);
 }
 
 TEST_F(NewUsersWay, PassesRecordOptionsToReplay) {

@@ -5,15 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "daemon/config/config.h"
 #include "daemon/tools/lab/data_files.h"
+#include "daemon/tools/report/mode_pictures.h"
 #include "daemon/tools/report/modes_command.h"
 #include "daemon/tools/report/modes_output.h"
 #include "estimator/numeric/nan.h"
@@ -115,6 +118,36 @@ TEST(RecordModes, OfTheVirtualTableAreThoseOfItsTruth) {
               exact[0].frequency_hz, 0.01 * exact[0].frequency_hz);
   EXPECT_GT(first.mac_measured, 0.98);
   EXPECT_GT(first.mac_design, 0.9);
+}
+
+TEST(ModePictures, ShowEveryModeOnTheBuildingWithItsShapesAsCsv) {
+  const RecordModes& m = table().found;
+  const std::vector<Picture> pictures = mode_pictures(m, "-after");
+  ASSERT_EQ(pictures.size(), m.rows.size());
+  EXPECT_EQ(pictures.front().name, "mode-1-after");
+  for (const char* wanted : {">at rest<", ">identified<", ">design<", ">measured<"})
+    EXPECT_NE(pictures.front().plot.svg().find(wanted), std::string::npos) << wanted;
+  // The first mode by floor and frame: four frames of two floors, each with a channel.
+  std::istringstream csv(pictures.front().csv);
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "floor,frame,label,identified,identified_std_error,measured,design");
+  int rows = 0;
+  double largest = 0;
+  while (std::getline(csv, line)) {
+    ++rows;
+    int floor = 0;
+    double identified = 0, error = 0, measured = 0, design = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%*[^,],,%lf,%lf,%lf,%lf", &floor, &identified, &error,
+                          &measured, &design),
+              5)
+        << line;
+    EXPECT_NEAR(measured, identified, 0.1);
+    EXPECT_NEAR(design, identified, 0.2);
+    largest = std::max(largest, std::abs(identified));
+  }
+  EXPECT_EQ(rows, 8);
+  EXPECT_NEAR(largest, 1, 1e-3);
 }
 
 TEST(RecordModes, EveryMissingValueHasAReason) {
