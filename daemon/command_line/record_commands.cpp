@@ -404,7 +404,8 @@ void add_history(CommandList& commands) {
   CLI::App* command = commands.add(
       "history", "read what `run` keeps on disk: an overview, summaries, events, raw samples",
       "Times are UTC (2026-11-21T23:15:00Z) or seconds since 1970.\nExit status: 0 done; 1 "
-      "--losses found one; 2 bad usage or input; nothing is written.\nExamples:\n  framewatch "
+      "--losses or --report found one; 2 bad usage or input; nothing is written.\nExamples:\n  "
+      "framewatch "
       "history building.toml\n  "
       "framewatch history building.toml --last 2d --parameter 'kx_1_*'\n  framewatch history "
       "building.toml --period 3600 --out year.csv.gz\n  framewatch history building.toml --from "
@@ -434,8 +435,11 @@ void add_history(CommandList& commands) {
   command->add_flag("--losses", arguments.losses,
                     "look in months or years of daily means for lasting losses that weather does "
                     "not\nexplain");
+  add_file(
+      command, "--report", arguments.report,
+      "file for a page about months or years: losses, every frame day by day, weather, events");
   add_file(command, "--weather", arguments.weather,
-           "table (CSV) for --losses: time, then temperatures (NAME_degc), humidity "
+           "table (CSV) for --losses and --report: time, then temperatures (NAME_degc), humidity "
            "(NAME_pct),\nwind (NAME_mps)");
   command->add_flag("--json", arguments.json, "print the overview or the losses as JSON");
   add_max_size(command);

@@ -62,7 +62,7 @@ void LossEvidence::update(Candidate& c, double day, double days, const Eigen::Ve
   c.covariance.col(w) *= kept;
   c.covariance(w, w) += c.wander * c.wander * (1 - kept * kept);
   for (Bet& bet : c.bets) bet.effect[w] *= kept;
-  c.bets.push_back({day, Eigen::VectorXd::Zero(w + 1)});
+  c.bets.push_back({day, c.log_likelihood, Eigen::VectorXd::Zero(w + 1)});
 
   Eigen::VectorXd h(w + 1);
   h << regressors, 1;
@@ -96,19 +96,16 @@ LossEvidence::Claim LossEvidence::claim_of(const Bet& bet) const {
               beyond * beyond * variance / 2 + log_normal(beyond * error)};
 }
 
-double LossEvidence::best_log_likelihood() const {
-  double best = kNever;
-  for (const Candidate& c : candidates_) best = std::max(best, c.log_likelihood);
-  return best;
-}
-
 /// Returns the capital of the bet with this index, and keeps the step that it claims if its largest
 /// share exceeds `largest`.
-double LossEvidence::capital_of(std::size_t bet, double best, double& largest) {
-  double capital = 0;
+double LossEvidence::capital_of(std::size_t bet, double& largest) {
+  double best = kNever, capital = 0;
+  for (const Candidate& c : candidates_)
+    best = std::max(best, c.log_likelihood - c.bets[bet].log_likelihood_before);
   for (const Candidate& c : candidates_) {
     const Claim claim = claim_of(c.bets[bet]);
-    const double log = c.log_likelihood - best + claim.log_ratio;
+    const double since = c.log_likelihood - c.bets[bet].log_likelihood_before;
+    const double log = since - best + claim.log_ratio;
     capital += std::exp(std::min(log, kMostLog));
     if (log <= largest) continue;
     largest = log;
@@ -118,10 +115,9 @@ double LossEvidence::capital_of(std::size_t bet, double best, double& largest) {
 }
 
 void LossEvidence::judge() {
-  const double best = best_log_likelihood();
   double capital = settled_, largest = kNever;
   for (std::size_t b = 0; b < candidates_.front().bets.size(); ++b)
-    capital += capital_of(b, best, largest);
+    capital += capital_of(b, largest);
   log_capital_ = std::log(capital);
 }
 
@@ -137,7 +133,7 @@ void LossEvidence::thin() {
     if (gap < closest) closest = gap, least = b;
   }
   double ignored = std::numeric_limits<double>::infinity();
-  settled_ += capital_of(least, best_log_likelihood(), ignored);
+  settled_ += capital_of(least, ignored);
   for (Candidate& c : candidates_)
     c.bets.erase(c.bets.begin() + static_cast<std::ptrdiff_t>(least));
 }

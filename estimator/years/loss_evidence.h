@@ -13,10 +13,11 @@ namespace framewatch::estimator {
 /// The healthy quantity is y = b . regressors + w + noise: b has a normal prior, so that weather
 /// that was never seen widens the error; w wanders slowly and comes back. How much it wanders is
 /// not known: kWander candidates run side by side. A drop is a step, of at least `least` and beyond
-/// it of half-normal size. Every day
-/// begins a bet on a step from that day on. A bet's capital is the ratio of the likelihoods, the
-/// healthy one being that of the best candidate. The bets' stakes add up to 1 over the life, so the
-/// total capital of a healthy quantity ever reaches 1/a with probability a at most (Ville).
+/// it of half-normal size. Every day begins a bet on a step from that day on. A bet's capital is
+/// the mean likelihood of the values since then with a step, over that of the best candidate
+/// without one: an element may begin to wander more on any day. The bets' stakes add up to 1 over
+/// the life, so the total capital of a healthy quantity ever reaches 1/a with probability a at most
+/// (Ville).
 class LossEvidence {
  public:
   /// Standard deviation of what a step exceeds the least one by, in the prior.
@@ -46,6 +47,7 @@ class LossEvidence {
  private:
   struct Bet {
     double day;
+    double log_likelihood_before;       ///< of its candidate, before that day
     Eigen::VectorXd effect;             ///< of a unit step on the state's mean
     double information = 0, score = 0;  ///< of the step's size
   };
@@ -63,8 +65,7 @@ class LossEvidence {
     double size, std_error, log_ratio;
   };
   Claim claim_of(const Bet& bet) const;
-  double best_log_likelihood() const;
-  double capital_of(std::size_t bet, double best, double& largest);
+  double capital_of(std::size_t bet, double& largest);
   void judge();
   void thin();
 

@@ -14,9 +14,11 @@
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/base/utc_time.h"
+#include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_losses.h"
 #include "daemon/monitor/history/history_overview.h"
+#include "daemon/monitor/history/history_report.h"
 #include "daemon/monitor/history/raw_export.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "daemon/monitor/history/weather_table.h"
@@ -162,14 +164,24 @@ int fail(const std::vector<std::string>& problems) {
   return kBadInput;
 }
 
-/// Shows the losses that the daily means prove. Returns the exit code: 1 when there is one.
-int show_losses(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries) {
+/// Finds losses in the daily means, shows them and writes the page. Returns the exit code: 1 when
+/// there is a loss.
+int show_years(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries) {
   std::vector<std::string> problems;
   const auto weather = a.weather.empty() ? WeatherTable{} : read_weather(a.weather, problems);
   if (!weather) return fail(problems);
-  const HistoryLosses losses = find_losses(r, summaries, *weather);
+  const std::vector<ElementDays> elements = read_days(r, summaries);
+  const HistoryLosses losses = find_losses(elements, *weather);
+  std::string page;
+  if (!a.report.empty() && !elements.empty())
+    page = history_page(summaries.structure(), elements, losses, *weather,
+                        summaries.events(r.from_us, r.to_us, kMaxEvents),
+                        summaries.acknowledgements(r.from_us, r.to_us));
   if (const std::string why = summaries.problem(); !why.empty())
     return fail({fmt::format("{}: {}", summary_file(r.directory), why)});
+  if (!page.empty())
+    if (const std::string why = drivers::write_text_file(a.report, page); !why.empty())
+      return fail({why});
   fmt::print("{}", a.json ? losses_json(losses) : printable_lines(losses_text(losses)));
   return losses.found.empty() ? 0 : kFailed;
 }
@@ -181,7 +193,7 @@ int history(const HistoryArguments& a) {
   SummaryQuery summaries;
   const auto request = read_history_request(a, summaries, problems);
   if (!request) return fail(problems);
-  if (a.losses) return show_losses(a, *request, summaries);
+  if (a.losses || !a.report.empty()) return show_years(a, *request, summaries);
   const bool asks = !a.out.empty() || !a.raw.empty() || a.events || !a.parameters.empty() ||
                     a.period_s != 0 || !a.from.empty() || !a.to.empty() || !a.last.empty();
   if (!asks)

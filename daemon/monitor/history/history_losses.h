@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/monitor/history/history_request.h"
-#include "daemon/monitor/history/summary_query.h"
+#include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/weather_table.h"
 #include "estimator/years/years_watch.h"
 
@@ -16,7 +15,7 @@ namespace framewatch::daemon {
 struct HistoryLosses {
   std::vector<std::string> elements;  ///< frame stiffnesses with values
   std::vector<std::string> covariates;
-  std::int64_t from_us = 0, to_us = 0;                ///< first and last day
+  std::int64_t from_day = 0, to_day = 0;              ///< since 1970, UTC
   int days = 0;                                       ///< with values
   std::vector<estimator::YearsWatch::Finding> found;  ///< in order of time
   struct State {
@@ -26,11 +25,18 @@ struct HistoryLosses {
   std::vector<State> state;  ///< by element, then of all of them alike
 };
 
-/// Watches the frame stiffnesses of a request by their daily means, from the first day on. Returns
-/// no elements when the history has no hour with values.
-HistoryLosses find_losses(const HistoryRequest& request, SummaryQuery& summaries,
-                          const WeatherTable& weather);
+/// Watches the elements by their daily means, from the first day on.
+HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather);
 
+/// Returns the name of the element that a finding speaks of.
+std::string element_name(const HistoryLosses& losses, int element);
+/// Returns how many losses there are, and what that means.
+std::string losses_sentence(const HistoryLosses& losses);
+std::string loss_sentence(const HistoryLosses& losses,
+                          const estimator::YearsWatch::Finding& finding);
+/// Returns a row for each element, and one for all alike: name, median in N/m, evidence, most
+/// likely loss.
+std::vector<std::vector<std::string>> losses_rows(const HistoryLosses& losses);
 std::string losses_text(const HistoryLosses& losses);
 std::string losses_json(const HistoryLosses& losses);
 

@@ -14,6 +14,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/picture_files.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/config/keys/suggest.h"
 #include "daemon/monitor/history/history_files.h"
@@ -91,9 +92,11 @@ class RequestReader {
     if (!a_.out.empty() && a_.out != drivers::kStandardOutput && !a_.out.ends_with(".csv") &&
         !a_.out.ends_with(".csv.gz") && !a_.out.ends_with(".mat"))
       problem(a_.out + ": the name for summaries must end in .csv, .csv.gz or .mat");
-    if (a_.losses && (!a_.out.empty() || !a_.raw.empty() || a_.events))
-      problem("--losses cannot be combined with --out, --raw or --events");
-    if (!a_.weather.empty() && !a_.losses) problem("--weather needs --losses");
+    const bool of_years = a_.losses || !a_.report.empty();
+    if (of_years && (!a_.out.empty() || !a_.raw.empty() || a_.events))
+      problem("--losses and --report cannot be combined with --out, --raw or --events");
+    if (!a_.weather.empty() && !of_years) problem("--weather needs --losses or --report");
+    if (const std::string rule = problem_of_page_name(a_.report); !rule.empty()) problem(rule);
     if (!a_.raw.empty())
       if (const std::string rule = problem_of_raw_name(a_.raw); !rule.empty()) problem(rule);
     const auto code = [&](const char* option, const std::string& text, std::size_t most) {

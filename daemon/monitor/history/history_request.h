@@ -25,7 +25,8 @@ struct HistoryArguments {
   std::string network = "XX", station = "FRAME";  ///< for miniSEED
   bool events = false;
   bool losses = false;
-  std::string weather;  ///< table for --losses, see read_weather(); empty: none
+  std::string report;   ///< page about months or years
+  std::string weather;  ///< table for --losses and --report, see read_weather(); empty: none
   bool json = false;
 };
 

@@ -23,7 +23,7 @@ constexpr int kStories = 8;
 constexpr double kYear_d = 365.25;
 constexpr double kStiffness = 5e8;  // N/m
 constexpr double kNoise = 0.006;    // of a day's value
-constexpr int kLossDay = 400, kThreeYears_d = 1096;
+constexpr int kLossDay = 400, kThreeYears_d = 1096, kTwelveYears_d = 4383, kThirtyYears_d = 10957;
 /// Largest error of a loss's size in some hundred draws, in standard errors.
 constexpr double kMostErrors = 5;
 
@@ -186,6 +186,19 @@ TEST(Years, AllStoriesAlikeAreReportedAsThat) {
   Found all = find(runs, {0, 1, 2, 3, 4, 5, 6, 7}, 0.02, 365);
   EXPECT_GE(all.placed, 0.9 * runs);
   show("2 % of all stories", runs, all);
+}
+
+TEST(Years, NoAlarmInThirtyYearsAndALossAfterTwelveIsFoundWithinDays) {
+  for (int seed = 0; seed < draws(4); ++seed) {
+    EXPECT_TRUE(run(static_cast<unsigned>(seed), kThirtyYears_d).empty()) << seed;
+    const std::size_t story = static_cast<std::size_t>(seed) % kStories;
+    const auto findings = run(static_cast<unsigned>(seed), kTwelveYears_d + 30, [=](World& w) {
+      if (w.day + 1 == kTwelveYears_d) w.stories[story].left = 0.95;
+    });
+    ASSERT_EQ(findings.size(), 1) << seed;
+    EXPECT_EQ(findings[0].element, static_cast<int>(story));
+    EXPECT_LE(findings[0].found_day - kTwelveYears_d, 10);
+  }
 }
 
 TEST(Years, WithoutAThermometerTheSeasonStandsForTheWeather) {

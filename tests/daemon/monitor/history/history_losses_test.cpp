@@ -41,7 +41,7 @@ class HistoryLossesTest : public testing::Test {
     SummaryStore store(settings);
     EXPECT_EQ(store.open(), "");
     SummaryBatch batch;
-    batch.parameters.structure = "four frames";
+    batch.parameters.structure = "four <frames>";
     batch.parameters.name = kNames;
     batch.parameters.unit = {"N/m", "N/m", "N/m", "N/m", "N*s/m"};
     batch.parameters.kind = {0, 0, 0, 0, 2};
@@ -132,6 +132,20 @@ TEST_F(HistoryLossesTest, DoesWithoutWeather) {
   EXPECT_NE(ran.out.find("kx_2_y1 -"), std::string::npos) << ran.out;
 }
 
+TEST_F(HistoryLossesTest, DrawsEveryFrameDayByDayOnOnePage) {
+  HistoryArguments a;
+  a.weather = weather_path_;
+  a.report = directory_.path("years.html");
+  const Ran ran = run(a);
+  EXPECT_EQ(ran.code, 1) << ran.problems;
+  const std::string page = test::read_file(a.report);
+  for (const char* part :
+       {"<h1>four &lt;frames&gt;</h1>", "<strong>kx_2_y1 -", "kx_1_y1: 4.9", "loss of 4",
+        "outside_degc", "days since 2025-01-01", "windows with values", "There were no events."})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  EXPECT_EQ(page.find("cx_1_y1"), std::string::npos);
+}
+
 TEST_F(HistoryLossesTest, SaysThatThereAreNoValues) {
   HistoryArguments a;
   a.parameters = {"cx*"};
@@ -143,7 +157,11 @@ TEST_F(HistoryLossesTest, SaysThatThereAreNoValues) {
 TEST_F(HistoryLossesTest, RefusesWhatItCannotCombine) {
   HistoryArguments a;
   a.out = directory_.path("x.csv");
-  EXPECT_EQ(run(a).problems, "--losses cannot be combined with --out, --raw or --events\n");
+  EXPECT_EQ(run(a).problems,
+            "--losses and --report cannot be combined with --out, --raw or --events\n");
+  HistoryArguments picture;
+  picture.report = directory_.path("years.png");
+  EXPECT_EQ(run(picture).code, 2);
   HistoryArguments none;
   none.weather = directory_.path("none.csv");
   const Ran absent = run(none);

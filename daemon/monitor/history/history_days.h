@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "daemon/monitor/history/history_request.h"
+#include "daemon/monitor/history/summary_query.h"
+#include "estimator/years/years_watch.h"
+
+namespace framewatch::daemon {
+
+/// One day of a stiffness: its mean, the quartiles of its hours, and the share of windows with a
+/// value.
+struct DayOfElement {
+  estimator::DayMean mean;
+  double q1, median, q3;
+  double shown;
+};
+
+struct ElementDays {
+  std::string name;
+  std::map<std::int64_t, DayOfElement> days;  ///< by day since 1970, UTC; at least one
+
+  /// Returns the median of all days.
+  double usual() const;
+};
+
+/// Reads the frame stiffnesses of a request day by day. Elements without any value are left out.
+std::vector<ElementDays> read_days(const HistoryRequest& request, SummaryQuery& summaries);
+
+/// Returns "2026-11-28" for a day since 1970.
+std::string day_text(std::int64_t day);
+/// Returns "1 day" or "12 days".
+std::string days_text(int days);
+
+}  // namespace framewatch::daemon
