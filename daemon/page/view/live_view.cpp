@@ -279,9 +279,11 @@ void LiveView::show_modes() {
     const std::lock_guard<std::mutex> lock(mutex_);
     newest = history_.newest();
   }
-  PageModes modes = parameters_.empty() || same_parameters_
-                        ? page_modes(config_, newest)
-                        : PageModes{.why = "the estimator has other parameters than this page"};
+  PageModes modes;
+  if (parameters_.empty() || same_parameters_)
+    modes = page_modes(config_, newest);
+  else
+    modes.why = "the estimator has other parameters than this page";
   if (modes.why.empty()) mode_errors_.correct(modes);
   const std::string json = modes_json(modes);
   const std::lock_guard<std::mutex> lock(mutex_);

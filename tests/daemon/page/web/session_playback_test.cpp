@@ -292,7 +292,9 @@ TEST(SessionPlayback, PlaysFramesOfCan) {
   ASSERT_TRUE(playback) << r.why;
   int rows = 0, estimates = 0;
   for (const Played& e : played(*playback)) {
-    if (e.name == "end") EXPECT_TRUE(e.data["notes"].empty()) << e.data;
+    if (e.name == "end") {
+      EXPECT_TRUE(e.data["notes"].empty()) << e.data;
+    }
     estimates += e.name == "estimate";
     if (e.name != "motion") continue;
     for (const auto& row : e.data["rows"]) {
