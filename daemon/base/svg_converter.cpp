@@ -28,16 +28,6 @@ constexpr double kPrintedPerPixel = 600 / 96.0;
 /// Values of cairo's enumerations.
 constexpr int kRgb24 = 1, kUnitPixels = 3, kCreateDate = 5, kSuccess = 0;
 
-struct Rectangle {
-  double x, y, width, height;
-};
-
-struct LibraryError {
-  unsigned domain;
-  int code;
-  char* message;
-};
-
 /// Appends bytes to the string `out`, as cairo's stream functions want it.
 int append(void* out, const unsigned char* bytes, unsigned size) {
   static_cast<std::string*>(out)->append(reinterpret_cast<const char*>(bytes), size);
@@ -65,6 +55,15 @@ bool find_function(void* library, const char* name, Function*& function) {
 /// The functions of librsvg 2.46 and cairo 1.16 and later that are used, with their documented
 /// signatures.
 struct SvgConverter::Functions {
+  struct Rectangle {
+    double x, y, width, height;
+  };
+  struct LibraryError {
+    unsigned domain;
+    int code;
+    char* message;
+  };
+
   void* (*read)(const unsigned char*, std::size_t, LibraryError**) = nullptr;
   int (*render)(void*, void*, const Rectangle*, LibraryError**) = nullptr;
   void (*free_object)(void*) = nullptr;
@@ -123,13 +122,13 @@ std::optional<SvgConverter> SvgConverter::load(std::string& problem) {
 
 std::string SvgConverter::convert(const std::string& document, double width_px, double height_px,
                                   const std::string& format, const std::string& path) const {
-  LibraryError* error = nullptr;
+  Functions::LibraryError* error = nullptr;
   void* drawing =
       f_->read(reinterpret_cast<const unsigned char*>(document.data()), document.size(), &error);
   const bool png = format == "png";
   std::string svg;
   const double scale = png ? kPrintedPerPixel : format == "pdf" ? kPointsPerPixel : 1;
-  const Rectangle all{0, 0, scale * width_px, scale * height_px};
+  const Functions::Rectangle all{0, 0, scale * width_px, scale * height_px};
   void* surface = png ? f_->image_surface(kRgb24, static_cast<int>(std::lround(all.width)),
                                           static_cast<int>(std::lround(all.height)))
                   : format == "pdf" ? f_->pdf_surface(path.c_str(), all.width, all.height)
