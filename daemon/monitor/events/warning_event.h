@@ -10,7 +10,7 @@
 
 namespace framewatch::daemon {
 
-/// What an event is about, and since when.
+/// The subject of an event, and since when it holds.
 struct EventSubject {
   std::string kind, place;
   std::int64_t id;
