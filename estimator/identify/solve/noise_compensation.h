@@ -120,8 +120,9 @@ class ModelMisfit {
   static constexpr double kJump = 4;
   /// Part of the noise's energy by which it may exceed what is expected: a quarter of its level.
   static constexpr double kNoiseDoubt = 0.5;
-  /// Windows in the mean of what is usual: 20 s of blocks, four windows that do not overlap.
-  static constexpr int kLearned = 80;
+  /// Windows in the mean of what is usual: a minute of blocks. An earthquake is rarely longer, so
+  /// its strong phase is not judged by its weak beginning.
+  static constexpr int kLearned = 240;
   int lowest_floor(int unknown) const;
   void learn(std::size_t floor, double expected);
   /// Returns the ratio of excess to force beyond which a misfit is new, given the usual ratio.

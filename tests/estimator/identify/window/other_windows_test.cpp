@@ -27,7 +27,7 @@ constexpr double kFarErrorRatio = 2;
 constexpr double kAlikePerMass = 400;     // 1/s^2: a first mode near 2 Hz
 constexpr double kAlikeDamping_s = 2e-3;  // damping over stiffness
 /// Two samples of the base, 20 ms apart, off by so much.
-constexpr double kGlitched_s = 60, kGlitch_s = 30, kGlitch_mps2 = 10;
+constexpr double kGlitched_s = 100, kGlitch_s = 70, kGlitch_mps2 = 10;
 /// What a value may not be at once: so wrong, and by so many of its errors.
 constexpr double kWrong = 0.03, kCertain = 5;
 /// Instants until a filter is refilled, at most, and of the rows that a value needs.
