@@ -9,6 +9,7 @@
 
 #include <framewatch/window_estimate_t.hpp>
 
+#include "daemon/page/view/newest_values.h"
 #include "estimator/motion/sample.h"
 #include "estimator/setup/pipeline_config.h"
 #include "estimator/shaking/story_response.h"
@@ -40,13 +41,6 @@ class MotionRows {
   std::string rows_;
   std::int64_t first_us_ = 0;
   std::size_t count_ = 0, left_out_ = 0;  ///< left_out_: ever
-};
-
-/// The newest value of every parameter with its standard error and the end of its window; 0: none
-/// has come. Empty before the first estimate.
-struct NewestValues {
-  std::vector<double> value, std_error;
-  std::vector<std::int64_t> end_us;
 };
 
 /// Empties the values and boxplots of an estimate and makes room for those of `parameters`.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/page/view/page_history.h"
+#include "daemon/page/view/newest_values.h"
 #include "estimator/modes/natural_modes.h"
 
 namespace framewatch::daemon {
