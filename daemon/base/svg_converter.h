@@ -16,7 +16,7 @@ class SvgConverter {
 
   /// Writes `document`, which is `width_px` x `height_px` large at 96 pixels per inch, to a file.
   /// format: svg (letters become outlines), pdf (fonts are embedded) or png (600 pixels per inch).
-  /// The same document has the same bytes. Returns an empty string, or the reason of a failure.
+  /// Equal documents give equal bytes. Returns an empty string, or the reason of a failure.
   std::string convert(const std::string& document, double width_px, double height_px,
                       const std::string& format, const std::string& path) const;
 

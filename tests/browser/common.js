@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 'use strict';
-// What every test of the page needs: checks with their words, programs that end with the test, waiting.
+// The tests of the page share these functions. They check and say what failed, start programs that end with the test, and wait.
 const {spawn} = require('child_process');
 
 const kPatience = {timeout: 60000}; // for anything, on a busy machine

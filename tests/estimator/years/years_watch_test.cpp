@@ -89,7 +89,7 @@ int draws(int usual) {
   return usual * (times != nullptr ? std::max(std::atoi(times), 1) : 1);
 }
 
-/// What a watch sees of a day, which an event may falsify.
+/// The values and the weather of a day, as the watch gets them. A test may change them.
 struct Seen {
   std::vector<DayValue> values;
   std::vector<double> weather;

@@ -101,7 +101,7 @@ TEST(PageModes, SayWhatIsMissing) {
   double guessed_hz = 0;
   for (const auto& [error_hz, of_ratio] : of_design.other_errors) guessed_hz += error_hz;
   EXPECT_GT(guessed_hz, 0.1);
-  // A frame's damping is the reason why there is no damping.
+  // Without a value of one frame's damping, no mode has a damping ratio.
   forget(values, index_of(config, "cy_2_x1"));
   const PageModes undamped = page_modes(config, values);
   EXPECT_EQ(undamped.modes.size(), 8u);

@@ -28,7 +28,8 @@ constexpr double kAlikePerMass = 400;     // 1/s^2: a first mode near 2 Hz
 constexpr double kAlikeDamping_s = 2e-3;  // damping over stiffness
 /// Two samples of the base, 20 ms apart, off by so much.
 constexpr double kGlitched_s = 100, kGlitch_s = 70, kGlitch_mps2 = 10;
-/// What a value may not be at once: so wrong, and by so many of its errors.
+/// A value is wrong if it is off by more than this share of the truth and by more than so many of
+/// its standard errors.
 constexpr double kWrong = 0.03, kCertain = 5;
 constexpr double kMostWrong = 0.001;  // share of the values that may be so
 /// Instants until a filter is refilled, at most, and of the rows that a value needs.
