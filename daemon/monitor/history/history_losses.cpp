@@ -22,13 +22,14 @@ std::string change_text(double ratio, double std_error) {
   return fmt::format("{} %", change_with_error(ratio, std_error));
 }
 
-}  // namespace
-
+/// Returns the name of the element that a finding speaks of.
 std::string element_name(const HistoryLosses& l, int element) {
   return element == estimator::YearsWatch::kAllAlike
              ? kAll
              : l.elements[static_cast<std::size_t>(element)];
 }
+
+}  // namespace
 
 HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather) {
   HistoryLosses out;

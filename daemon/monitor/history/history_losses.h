@@ -28,8 +28,6 @@ struct HistoryLosses {
 /// Watches the elements by their daily means, from the first day on.
 HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather);
 
-/// Returns the name of the element that a finding speaks of.
-std::string element_name(const HistoryLosses& losses, int element);
 /// Returns how many losses there are, and what that means.
 std::string losses_sentence(const HistoryLosses& losses);
 std::string loss_sentence(const HistoryLosses& losses,
