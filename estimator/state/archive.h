@@ -51,12 +51,14 @@ class StateArchive {
     (item(values), ...);
     if (!(all_finite(values) && ...)) self().refuse();
   }
-  /// Archives a number. Refuses one outside least..most.
+  /// Archives a number. Refuses one outside least..most and leaves `value` as it was.
   template <typename T>
   void within(T& value, double least, double most) {
-    item(value);
-    const auto number = static_cast<double>(value);
-    if (!(number >= least && number <= most)) self().refuse();
+    T archived = value;
+    item(archived);
+    const auto number = static_cast<double>(archived);
+    if (!(number >= least && number <= most)) return self().refuse();
+    value = archived;
   }
   /// Archives a vector of numbers. Refuses one outside least..most.
   template <typename T>
@@ -74,6 +76,8 @@ class StateArchive {
 
   /// Returns true if the bytes have at least this format.
   bool since(int format) const { return format_ >= format; }
+  /// Returns the format of the bytes, for a reader of a part of them.
+  int format() const { return format_; }
 
   static constexpr double kMax = 1e100;        ///< magnitude of any sum of squares of motion
   static constexpr double kMaxCount = 4.5e15;  ///< largest whole number: exact, far from overflow

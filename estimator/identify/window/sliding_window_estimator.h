@@ -96,7 +96,7 @@ class SlidingWindowEstimator {
       a(rows);
       a.any_size(bytes);
       if (!long_) return;
-      StateReader state(bytes);
+      StateReader state(bytes, a.format());
       if (rows == long_->rows()) long_->archive(state, *active_);
       if (rows != long_->rows() || !state.whole()) long_->retuned();
     } else {

@@ -243,7 +243,7 @@ TEST(LcmLogReader, ReadsManyFalseStartsInLinearTime) {
   const auto start = std::chrono::steady_clock::now();
   const Reading reading = read_bytes(log);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  EXPECT_LT(took.count(), 5.0);  // measured 1 s in Debug
+  EXPECT_LT(took.count(), 30);  // measured 1 s in Debug; in quadratic time it took minutes
   EXPECT_GE(reading.intact.size(), 10u);
 }
 
