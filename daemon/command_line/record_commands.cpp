@@ -239,11 +239,13 @@ void add_modes(CommandList& commands) {
 void add_simulate(CommandList& commands) {
   SimulateArguments& arguments = commands.arguments<SimulateArguments>();
   CLI::App* command = commands.add(
-      "simulate", "simulate a building's accelerometers and send them to LCM, CAN or a file",
+      "simulate",
+      "simulate a building's accelerometers, or years of its weather, for LCM, CAN or a file",
       "Examples:\n"
       "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
       "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2\n"
-      "  framewatch simulate configs/can/scenario_tower.toml --can vcan0");
+      "  framewatch simulate configs/can/scenario_tower.toml --can vcan0\n"
+      "  framewatch simulate configs/scenario_years.toml --history years --weather weather.csv");
   commands.reads_files(
       command->add_option("SCENARIO", arguments.scenario, "scenario file (TOML)")->required());
   add_file(command, "--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog");
@@ -259,8 +261,13 @@ void add_simulate(CommandList& commands) {
                    "speed of --lcm and --can, as a multiple of real time")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
+  add_folder(command, "--history", arguments.history,
+             "new folder for a history as framewatch run keeps it, from the scenario's [climate]: "
+             "years in\nminutes, without motion");
+  add_file(command, "--weather", arguments.weather,
+           "with --history: write the weather of every hour to this CSV file");
   command->add_option("--seconds", arguments.seconds, "duration, instead of the scenario's")
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(CLI::Range(1e-3, 1e9));
   add_file(command, "--truth", arguments.truth, "write the true values to this JSON file");
   command->add_flag("--quiet", arguments.quiet, "print no progress and no summary");
   add_max_size(command);

@@ -111,6 +111,10 @@ std::optional<TimeStamp> parse_time_stamp(std::string_view text) {
   if (text.size() < kShape.size()) return std::nullopt;
   std::string plain(text.substr(0, kShape.size()));
   if (plain[10] == ' ' || plain[10] == 't') plain[10] = 'T';
+  // Wherever dates have dots, the day comes first.
+  if (has_shape(plain, "00.00.0000T00:00:00"))
+    plain =
+        plain.substr(6, 4) + '-' + plain.substr(3, 2) + '-' + plain.substr(0, 2) + plain.substr(10);
   if (!has_shape(plain, kShape)) return std::nullopt;
   text.remove_prefix(kShape.size());
   std::size_t fraction = 0;

@@ -31,8 +31,9 @@ struct TimeStamp {
   std::optional<int> offset_min;  ///< local time minus UTC; empty: the stamp has no zone
 };
 
-/// Parses a time stamp. A blank may stand for the T; the zone is Z, an offset such as +09:00, or
-/// missing. Returns nullopt for any other text, also when a field is out of range.
+/// Parses a time stamp: 2026-11-21T17:00:00.01Z or 21.11.2026 17:00:00. A blank may stand for the
+/// T; the zone is Z, an offset such as +09:00, or missing. Returns nullopt for any other text, also
+/// when a field is out of range.
 std::optional<TimeStamp> parse_time_stamp(std::string_view text);
 
 /// Parses "Z", "UTC" or "+09:00" to minutes. Returns nullopt for any other text.

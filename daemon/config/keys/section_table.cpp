@@ -152,6 +152,9 @@ const SectionDescription kSections[] = {
     {"sensors", "[sensors]", "Errors of every simulated accelerometer."},
     {"sensor", "[[sensor]]", "Different errors of one channel. All keys of [sensors] apply."},
     {"change", "[[change]]", "A parameter change during the simulation."},
+    {"climate", "[climate]",
+     "Optional: weather and use, which change stiffness and damping by the hour "
+     "([years](years.md#simulate-years))."},
     {"effect", "[[effect]]",
      "An effect beyond the linear building, in a scenario or a configuration. "
      "[Effects](effects.md) lists equations and the keys of each kind.",

@@ -9,6 +9,7 @@
 
 #include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/estimates/estimate_table.h"
+#include "daemon/monitor/estimates/parameter_message.h"
 #include "drivers/files/encoded.h"
 #include "estimator/numeric/nan.h"
 
@@ -35,23 +36,12 @@ void Publisher::send(std::int64_t time_us, const std::string& channel, const Mes
 }
 
 void Publisher::parameters(std::int64_t time_us, const estimator::Pipeline& pipeline) {
-  const estimator::ParameterTable& table = pipeline.parameters();
-  parameter_table_t m{};
+  parameter_table_t m = parameter_message(config_, pipeline.parameters());
   m.time_us = time_us;
-  m.structure = config_.pipeline.structure.name;
-  m.config_sha256 = config_.sha256;
-  m.version = FRAMEWATCH_VERSION;
   m.rate_hz = config_.pipeline.options.rate_hz;
   m.window_rows = pipeline.window_rows();
   m.hop_rows = pipeline.hop_rows();
   m.boxplot_windows = config_.pipeline.options.boxplot_windows;
-  m.parameters = table.size();
-  for (int i = 0; i < table.size(); ++i) {
-    m.name.push_back(table[i].name);
-    m.unit.push_back(table[i].unit);
-    m.kind.push_back(static_cast<std::int32_t>(table[i].kind));
-    m.story.push_back(table[i].story);
-  }
   m.design.assign(pipeline.theta0().begin(), pipeline.theta0().end());
   m.design.resize(m.name.size());
   m.other_channel.assign(estimate_channels_.begin() + 1, estimate_channels_.end());

@@ -11,6 +11,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
+#include "daemon/monitor/estimates/parameter_message.h"
 #include "daemon/monitor/history/history_request.h"
 #include "daemon/tools/replay/replay_command.h"
 #include "daemon/tools/session/session_log.h"
@@ -93,8 +94,22 @@ class RunReader {
     return true;
   }
 
+  /// Returns true if the configuration identifies the parameters that the estimates have.
+  bool is_of_config() {
+    if (!run_.report.config) return true;
+    const Config& config = *run_.report.config;
+    const parameter_table_t& has = run_.report.estimates.table;
+    const parameter_table_t wanted = parameter_message(config, config.pipeline.parameters());
+    if (has.name == wanted.name) return true;
+    problem(fmt::format("has {} parameters of \"{}\"; {} identifies {} others of \"{}\"",
+                        has.name.size(), has.structure, config.path, wanted.name.size(),
+                        wanted.structure));
+    return false;
+  }
+
   /// Reads the samples and evaluates everything.
   void evaluate_with(const std::vector<std::string>& raw) {
+    if (!is_of_config()) return;
     if (run_.report.config && !raw.empty()) {
       std::vector<std::string> found;
       run_.report.motion = read_session_motion(*run_.report.config, raw, found, options_.record);
@@ -170,19 +185,12 @@ class RunReader {
   void take_table(const Config& config, const std::string& structure) {
     const estimator::ParameterTable table = config.pipeline.parameters();
     parameter_table_t& out = run_.report.estimates.table;
+    out = parameter_message(config, table);
     out.structure = structure;
-    out.config_sha256 = config.sha256;
-    out.version = FRAMEWATCH_VERSION;
     const Eigen::VectorXd design = group_parameters(config.pipeline.structure, table,
                                                     estimator::story_design(config.pipeline));
-    for (int p = 0; p < table.size(); ++p) {
-      out.name.push_back(table[p].name);
-      out.unit.push_back(table[p].unit);
-      out.kind.push_back(static_cast<std::int32_t>(table[p].kind));
-      out.story.push_back(table[p].story);
-      out.design.push_back(design[p]);
-    }
-    out.parameters = table.size();
+    out.design.assign(design.begin(), design.end());
+    out.design.resize(out.name.size());
     run_.report.units = ReportUnits(out);
     run_.report.labels = frame_labels(config.pipeline.structure);
   }

@@ -14,6 +14,8 @@
 
 #include "daemon/base/file_digest.h"
 #include "daemon/base/toml_document.h"
+#include "daemon/base/utc_time.h"
+#include "daemon/config/config_size.h"
 #include "daemon/config/keys/section.h"
 #include "daemon/config/read_config.h"
 #include "daemon/config/sections/effects.h"
@@ -172,8 +174,45 @@ class TruthReader {
   Eigen::VectorXd theta_;
 };
 
+/// Reads [climate], null if absent.
+std::optional<ClimateSettings> read_climate(const TomlValue* table,
+                                            std::vector<TextProblem>& problems) {
+  if (table == nullptr) return std::nullopt;
+  ConfigSection s("climate", "climate", table, {}, problems);
+  ClimateSettings out;
+  const std::string start = s.text("start");
+  if (const auto start_us = read_utc(start))
+    out.start_us = *start_us;
+  else if (s.good("start"))
+    s.problem("start", fmt::format("\"{}\" is no time in UTC such as 2026-01-31T12:00:00Z", start));
+  estimator::Climate& c = out.climate;
+  c.mean_degc = s.number("mean_degc");
+  c.season_degc = s.number("season_degc");
+  c.day_degc = s.number("day_degc");
+  c.front_degc = s.number("front_degc");
+  c.mean_wind_mps = s.number("mean_wind_mps");
+  c.per_degc = s.number("per_degc");
+  c.frozen_per_degc = s.number("frozen_per_degc");
+  c.per_pct = s.number("per_pct");
+  c.per_mps = s.number("per_mps");
+  c.occupied_mass_ratio = s.number("occupied_mass_ratio");
+  c.spread_ratio = s.number("spread_ratio");
+  c.shortest_lag_days = s.number("shortest_lag_days");
+  c.longest_lag_days = s.number("longest_lag_days");
+  if (c.longest_lag_days < c.shortest_lag_days)
+    s.problem("longest_lag_days",
+              fmt::format("is shorter than shortest_lag_days = {:g}", c.shortest_lag_days));
+  c.wander_ratio = s.number("wander_ratio");
+  c.wander_alike_ratio = s.number("wander_alike_ratio");
+  c.damping_exponent = s.number("damping_exponent");
+  out.stiffness_error_ratio = s.number("stiffness_error_ratio");
+  out.damping_error_ratio = s.number("damping_error_ratio");
+  return out;
+}
+
 constexpr double kMaxChanged = 1e7;  // values; every change stores all parameters
-constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change", "effect"};
+constexpr std::array kSections = {"truth",  "motion", "sensors", "sensor",
+                                  "change", "effect", "climate"};
 
 /// The three parts of the file: top keys, sections of the scenario, the building.
 struct Parts {
@@ -218,9 +257,13 @@ class ScenarioReader {
 
     ConfigSection motion("motion", "motion", section(parts_, "motion"), {1, 1}, problems_);
     s.motion = read_motion(motion, relative(""), s.seed);
+    s.climate = read_climate(section(parts_, "climate"), problems_);
     s.duration_s = top.given("duration_s") ? top.number("duration_s") : s.motion.duration_s();
-    if (const std::string problem = building ? size_problem(s) : ""; !problem.empty())
-      problems_.push_back({place_of_size(problem), problem});
+    // Years of a climate are not simulated instant by instant: `simulate` checks what is asked for.
+    const std::string problem = !building   ? ""
+                                : s.climate ? simulated_size_problem(s.config.pipeline.structure)
+                                            : size_problem(s);
+    if (!problem.empty()) problems_.push_back({place_of_size(problem), problem});
     ConfigSection truth("truth", "truth", section(parts_, "truth"), {1, 1}, problems_);
     if (building) {
       const estimator::PipelineConfig& p = s.config.pipeline;

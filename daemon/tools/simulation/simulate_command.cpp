@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/simulation/simulate_command.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/core.h>
@@ -11,6 +13,7 @@
 #include "daemon/base/progress.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/tools/simulation/scenario.h"
+#include "daemon/tools/simulation/simulated_history.h"
 #include "daemon/tools/simulation/simulation.h"
 #include "daemon/tools/simulation/simulation_output.h"
 #include "daemon/tools/simulation/simulation_truth.h"
@@ -19,14 +22,41 @@
 #include "drivers/lcm/lcm_provider.h"
 
 namespace framewatch::daemon {
+namespace {
+
+std::string simulate_history(const Scenario& scenario, const SimulateArguments& a) {
+  const std::int64_t count = hours(scenario);
+  std::string problem;
+  {
+    Progress progress("simulate", count, "hours", 1, a.quiet);
+    problem = write_simulated_history(scenario, a.history, a.weather,
+                                      [&](std::int64_t done) { progress(done); });
+  }
+  if (problem.empty() && !a.quiet)
+    fmt::print(stderr, "{}: {} hours to {}\n", scenario.config.pipeline.structure.name, count,
+               a.history);
+  return problem;
+}
+
+}  // namespace
+
 int simulate(const SimulateArguments& a) {
-  if (a.out.empty() && !a.lcm && !a.can)
-    return refuse("simulate", "nowhere to put it: --out FILE, --lcm, --can or several");
+  const bool motion = !a.out.empty() || a.lcm || a.can;
+  if (!motion && a.history.empty())
+    return refuse("simulate",
+                  "nowhere to put it: --out FILE, --lcm, --can, --history FOLDER or several");
+  if (a.history.empty() && !a.weather.empty())
+    return refuse("simulate", "--weather goes with --history");
   std::vector<ConfigProblem> problems;
   std::optional<Scenario> scenario = load_scenario(a.scenario, problems);
   print_problems(problems);
   if (!scenario) return kBadInput;
   if (a.seconds > 0) scenario->duration_s = a.seconds;
+  if (!a.history.empty()) {
+    const std::string problem = simulate_history(*scenario, a);
+    if (!problem.empty()) return refuse("simulate", problem);
+    if (!motion) return 0;
+  }
   if (const std::string problem = size_problem(*scenario); !problem.empty())
     return refuse("simulate", fmt::format("{}: {}", a.scenario, problem));
 

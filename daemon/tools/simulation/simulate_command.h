@@ -9,6 +9,8 @@ struct SimulateArguments {
   std::string scenario;
   std::string out;            ///< .csv, .csv.gz or .lcmlog; empty for no file
   std::string truth;          ///< JSON file of the true values; empty for none
+  std::string history;        ///< folder of a history of the climate; empty for none
+  std::string weather;        ///< CSV file of the hours of the weather; empty for none
   bool lcm = false;           ///< publish live
   std::string lcm_url;        ///< empty for the configuration's
   bool can = false;           ///< send CAN frames

@@ -13,6 +13,26 @@ namespace {
 
 constexpr double kMaxInstants = 1e9;  // 116 days at 100 Hz
 
+/// Returns the truth from time 0 on, then every later change, also of the climate by the hour.
+std::vector<estimator::ParameterChange> course_of(const Scenario& s) {
+  std::vector<estimator::ParameterChange> out;
+  if (!s.climate) {
+    out.push_back({0, s.truth});
+    out.insert(out.end(), s.changes.begin(), s.changes.end());
+    return out;
+  }
+  estimator::ClimateStream climate = climate_of(s);
+  auto change = s.changes.begin();
+  for (double hour_s = 0; hour_s <= s.duration_s; hour_s += estimator::ClimateStream::kStep_s) {
+    climate.next();
+    out.push_back({hour_s, weathered(truth_at(s, hour_s), climate)});
+    for (; change != s.changes.end() && change->at_s < hour_s + estimator::ClimateStream::kStep_s;
+         ++change)
+      if (change->at_s > hour_s) out.push_back({change->at_s, weathered(change->theta, climate)});
+  }
+  return out;
+}
+
 estimator::ResponseStream response_of(const Scenario& s) {
   const estimator::Structure& structure = s.config.pipeline.structure;
   estimator::ResponseOptions options;
@@ -20,10 +40,12 @@ estimator::ResponseStream response_of(const Scenario& s) {
   std::vector<estimator::ResponseChannel> channels =
       response_channels(structure, s.config.pipeline.axes);
   estimator::ChannelEffects(s.effects).delay(channels);
-  return {structure, estimator::ParameterTable(structure),
-          s.truth,   s.motion,
-          options,   s.changes,
-          channels,  s.effects};
+  std::vector<estimator::ParameterChange> course = course_of(s);
+  const Eigen::VectorXd first = course.front().theta;
+  course.erase(course.begin());
+  return {
+      structure, estimator::ParameterTable(structure), first, s.motion, options, course, channels,
+      s.effects};
 }
 
 /// Converts the sensors' noise ratios to densities, by a run in advance.
@@ -47,6 +69,29 @@ std::vector<estimator::SensorModel> sensors_of(const Scenario& s) {
 }
 
 }  // namespace
+
+const Eigen::VectorXd& truth_at(const Scenario& s, double time_s) {
+  const Eigen::VectorXd* theta = &s.truth;
+  for (const estimator::ParameterChange& change : s.changes)
+    if (change.at_s <= time_s) theta = &change.theta;
+  return *theta;
+}
+
+Eigen::VectorXd weathered(const Eigen::VectorXd& theta, const estimator::ClimateStream& climate) {
+  const std::vector<double>& factor = climate.stiffness_factor();
+  const auto elements = static_cast<Eigen::Index>(factor.size());
+  Eigen::VectorXd out = theta;
+  for (Eigen::Index e = 0; e < elements; ++e) {
+    out[e] *= factor[static_cast<std::size_t>(e)];
+    out[elements + e] *= climate.damping_factor(static_cast<int>(e));
+  }
+  return out;
+}
+
+estimator::ClimateStream climate_of(const Scenario& s) {
+  const int elements = estimator::ParameterTable(s.config.pipeline.structure).elements();
+  return {s.climate->climate, elements, static_cast<double>(s.climate->start_us) * 1e-6, s.seed};
+}
 
 std::string size_problem(const Scenario& s) {
   const double instants = s.duration_s * s.rate_hz;

@@ -2,17 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "daemon/config/config.h"
+#include "estimator/simulate/climate.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/sensor_model.h"
 #include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
+
+/// [climate]: the weather of a simulated building.
+struct ClimateSettings {
+  estimator::Climate climate;
+  std::int64_t start_us = 0;         ///< UTC at the scenario's time 0
+  double stiffness_error_ratio = 0;  ///< deviation of a window's value, relative
+  double damping_error_ratio = 0;
+};
 
 /// A virtual test: configured building and sensors, true parameters, ground motion and changes.
 struct Scenario {
@@ -20,6 +30,7 @@ struct Scenario {
   Eigen::VectorXd truth;  ///< table order, SI
   estimator::PlanMotion motion;
   std::vector<estimator::ParameterChange> changes;
+  std::optional<ClimateSettings> climate;
   std::vector<estimator::Effect> effects;       ///< effects of config and of the scenario
   std::vector<estimator::SensorModel> sensors;  ///< parallel to config.pipeline.axes
   std::vector<double> noise_ratio;  ///< noise relative to the axis' rms, in addition to `sensors`
@@ -46,6 +57,13 @@ class Simulation {
   estimator::SensorArray sensors_;
   bool collapsed_ = false;
 };
+
+/// Returns the true parameters from `time_s` on, in the mean climate: those of the newest change.
+const Eigen::VectorXd& truth_at(const Scenario& scenario, double time_s);
+/// Returns parameters in the newest hour of a climate. theta: in the mean climate.
+Eigen::VectorXd weathered(const Eigen::VectorXd& theta, const estimator::ClimateStream& climate);
+/// Returns the climate of a scenario from its time 0 on. Precondition: it has one.
+estimator::ClimateStream climate_of(const Scenario& scenario);
 
 /// Returns the number of instants in the scenario's duration, both ends included.
 std::int64_t instants(const Scenario& scenario);

@@ -2,6 +2,7 @@
 before() {
   ln -s "$root/configs/table_two_story.toml" table.toml
   cp table.toml building.toml
+  ln -s "$root/configs" configs
   printf '[history]\ndirectory = "history"\n' >>building.toml
   framewatch simulate "$root/configs/scenario_table_two_story.toml" --seconds 60 --out rec.csv --quiet
   framewatch convert rec.csv --config building.toml --start-us 1795280400000000 rec.lcmlog
@@ -14,4 +15,6 @@ expected='
 ^no loss of at least 1 % that weather does not explain
 ^kx_1_y1 .* no loss
 ^all alike .* no loss
+^1 loss of at least 1 %
+kx_2_y1 -[34]\.[0-9] ± 0\.[0-9] %, since 2026-03-
 '

@@ -181,6 +181,11 @@ TEST_F(Table, ReadsTimeStampsWithTheirZone) {
   const auto declared = read("Time,a [g]\n2026-11-22 02:00:00.01,1\n2026-11-22 02:00:00.02,1\n");
   ASSERT_TRUE(declared);
   EXPECT_NEAR(declared->time_s[0], 1795280400.01, 1e-6);
+  options_.zone_min = 540;
+  const auto dots = read("Zeit;a [g]\n22.11.2026 02:00:00,01;1\n22.11.2026 02:00:00,02;1\n");
+  ASSERT_TRUE(dots);
+  EXPECT_NEAR(dots->time_s[0], 1795280400.01, 1e-6);
+  expect_refused("Time,a [g]\n11.21.2026 17:00:00,1\n", 2, {"which number is the month"});
   expect_refused("Time,a [g]\n11/21/2026 17:00:00,1\n11/21/2026 17:00:01,1\n", 2,
                  {"which number is the month"});
   expect_refused("Time,a [g]\n17:00:00.01,1\n17:00:00.02,1\n", 2, {"without its date"});

@@ -272,6 +272,22 @@ TEST(Compare, RefusesUnlikeBuildingsWithTheReason) {
       << why_unlike(*a, log);
 }
 
+TEST(Compare, RefusesALogWithTheConfigurationOfAnotherBuilding) {
+  ReplayArguments estimated;
+  estimated.config = runs().config;
+  estimated.inputs = {runs().path("run1.csv")};
+  estimated.quiet = true;
+  estimated.out = runs().path("of_another.lcmlog");
+  ASSERT_EQ(replay(estimated), 0);
+  RunOptions options;
+  options.config = FRAMEWATCH_SOURCE_DIR "/configs/table_two_story.toml";
+  std::vector<std::string> problems;
+  EXPECT_FALSE(read_run(estimated.out, options, problems));
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].find("has 50 parameters of \"paper, Table 1\"; "), std::string::npos)
+      << problems[0];
+}
+
 TEST(Compare, ReadsEverySource) {
   ReplayArguments replayed;
   replayed.config = runs().config;
