@@ -452,7 +452,9 @@ void add_history(CommandList& commands) {
       "file for a page about months or years: losses, every frame day by day, weather, events");
   add_file(command, "--weather", arguments.weather,
            "table (CSV) for --losses and --report: time, then temperatures (NAME_degc), humidity "
-           "(NAME_pct),\nwind (NAME_mps)");
+           "(NAME_pct),\nwind (NAME_mps), sun (NAME_wpm2) (default: what the history keeps)");
+  add_file(command, "--weather-out", arguments.weather_out,
+           "file for the kept weather, hour by hour: .csv or .csv.gz");
   command->add_flag("--json", arguments.json, "print the overview or the losses as JSON");
   add_max_size(command);
   commands.set_action(command, [&arguments] { return history(arguments); });

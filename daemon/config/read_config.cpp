@@ -63,8 +63,10 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.pipeline.options = read_estimator(document, problems);
   config.lcm = read_lcm(document, problems);
   config.commands = read_commands(document, problems);
+  config.weather = read_weather_tables(document, config, problems);
   read_can(document, config, problems);
   config.watch = read_watch(document, problems);
+  add_thermometer(config);
   if (config.watch) config.pipeline.options.long_window_s = config.watch->options.quiet_window_s;
   config.gap = read_gap(document, problems);
   config.history = read_history(document, problems);

@@ -129,13 +129,32 @@ void CanIntake::frame(int index, const CanFrame& frame) {
     ++counters.syncs;
     return bus.latch->sync(frame, host_us);
   }
+  const bool has_value = !map_.values.empty() && values(index, frame);
   const std::vector<FrameLookup::Target>& targets = bus.lookup.find(frame.id, frame.extended);
   if (targets.empty()) {
-    counters.foreign += !canopen(index, frame);
+    counters.foreign += !canopen(index, frame) && !has_value;
     return;
   }
   for (const FrameLookup::Target& target : targets)
     message(target.node, target.message, frame, host_us);
+}
+
+/// Passes on the values of a frame. Returns false if CanMap::values lacks its message.
+bool CanIntake::values(int bus, const CanFrame& frame) const {
+  bool ours = false;
+  for (const CanValueMap& map : map_.values) {
+    const CanMessageMap& m = map.message;
+    if (map.bus != bus || frame.extended != m.extended || (frame.id & m.mask) != (m.id & m.mask))
+      continue;
+    ours = true;
+    const bool whole = frame.fd == m.fd && frame.length == m.length;
+    const bool on = std::ranges::all_of(m.switches, [&](const CanSwitch& s) {
+      return fits(s.field, frame.length) && is_on(s, frame.data);
+    });
+    if (whole && on && value_sink_)
+      value_sink_(map.covariate, physical(map.field, frame.data), frame.stamp_us);
+  }
+  return ours;
 }
 
 /// Handles boot-up, heartbeat and EMCY. Returns false for a frame of no configured node.

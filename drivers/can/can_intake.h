@@ -64,6 +64,11 @@ class CanIntake {
   /// Sets the receiver of notices about buses and nodes. Call it before the first frame.
   void on_notice(CanNoticeSink sink) { notice_ = std::move(sink); }
 
+  /// Receives the values of CanMap::values. stamp_us: of the frame.
+  using ValueSink = std::function<void(std::size_t covariate, double value, std::int64_t stamp_us)>;
+  /// Sets the receiver of values. Call it before the first frame.
+  void on_value(ValueSink sink) { value_sink_ = std::move(sink); }
+
   /// Takes a frame of the bus with this index in the map.
   void frame(int bus, const CanFrame& frame);
   /// Ends the input: delivers the samples that wait for a next SYNC or for their time.
@@ -121,6 +126,7 @@ class CanIntake {
   bool canopen(int bus, const CanFrame& frame);
   void notice(const CanNotice& notice) const;
   void check_nodes(std::int64_t stamp_us);
+  bool values(int bus, const CanFrame& frame) const;
   void message(int node, int message, const CanFrame& frame, double host_us);
   void place(Node& node, int message, const CanFrame& frame, TimedValues values, double host_us);
   bool known(const TimedValues& values) const;
@@ -131,6 +137,7 @@ class CanIntake {
   Sink sink_;
   Observer observer_;
   CanNoticeSink notice_;
+  ValueSink value_sink_;
   HostClockSteps steps_;
   std::vector<Node> nodes_;
   std::vector<Bus> buses_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -72,15 +73,24 @@ struct CanBusMap {
   int receive_buffer_bytes = 2097152;
 };
 
+/// A signal that stands by itself, such as a temperature, not a sample of an axis.
+struct CanValueMap {
+  int bus = 0;
+  CanMessageMap message;  ///< without readings
+  CanField field;
+  std::size_t covariate = 0;  ///< index in the configuration
+};
+
 /// Says how to read samples from the buses, from the configuration and its DBC files.
 struct CanMap {
   std::vector<CanBusMap> buses;
   std::vector<CanNodeMap> nodes;
+  std::vector<CanValueMap> values;
   double grid_period_us = 10000;  ///< between the instants of the estimator
   /// Resamples nodes with their own clocks to multiples of grid_period_us.
   bool resample = false;
 
-  bool empty() const { return nodes.empty(); }
+  bool empty() const { return nodes.empty() && values.empty(); }
   /// Returns true if a node of the bus samples at the SYNC.
   bool has_sync(int bus) const {
     return std::any_of(nodes.begin(), nodes.end(), [&](const CanNodeMap& node) {

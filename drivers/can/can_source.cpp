@@ -86,6 +86,8 @@ std::vector<CanFilter> filters_of(const CanMap& map, int bus) {
     out.push_back({0x080u + static_cast<std::uint32_t>(node.canopen_id), 0x7FF, false});
     out.push_back({0x700u + static_cast<std::uint32_t>(node.canopen_id), 0x7FF, false});
   }
+  for (const CanValueMap& v : map.values)
+    if (v.bus == bus) out.push_back({v.message.id, v.message.mask, v.message.extended});
   if (map.has_sync(bus))
     out.push_back({map.buses[static_cast<std::size_t>(bus)].sync_id, 0x7FF, false});
   if (map.buses[static_cast<std::size_t>(bus)].nmt_start) out.push_back({0x700, 0x780, false});

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kWaves = 2;         // of the season: a year and half a year
 constexpr double kFrost_d = 2;    // lag of what freezes, days
-constexpr double kChange = 3;     // usual change of a covariate from day to day, its units
+constexpr double kChange = 0.3;   // usual change of a covariate from day to day, of its scale
 constexpr double kForgets_d = 9;  // days after which an unknown covariate may be anything usual
 
 double toward(double from, double to, double days, double lag_d) {
@@ -48,11 +48,11 @@ void WeatherLags::push(double day, const std::vector<double>& means) {
     }
     for (std::size_t i = 0; i < std::size(kLags_d); ++i) {
       past.lagged[i] = toward(past.lagged[i], past.newest, days, kLags_d[i]);
-      regressors_[r++] = (past.lagged[i] - past.first) / kScale;
+      regressors_[r++] = (past.lagged[i] - past.first) / covariates_[c].scale;
     }
     if (!covariates_[c].freezes) continue;
     past.frost = toward(past.frost, std::min(past.newest, 0.0), days, kFrost_d);
-    regressors_[r++] = past.frost / kScale;
+    regressors_[r++] = past.frost / covariates_[c].scale;
   }
   if (!covariates_.empty()) return;
   for (int wave = 1; wave <= kWaves; ++wave) {
@@ -66,8 +66,7 @@ double WeatherLags::doubt() const {
   double variance = 0;
   for (const Past& past : past_) {
     if (!past.known) return std::numeric_limits<double>::infinity();
-    const double change = kChange / kScale;
-    variance += change * change * std::min(day_ - past.day, kForgets_d);
+    variance += kChange * kChange * std::min(day_ - past.day, kForgets_d);
   }
   return std::sqrt(variance);
 }

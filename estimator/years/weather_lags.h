@@ -12,6 +12,9 @@ namespace framewatch::estimator {
 struct Covariate {
   std::string name;
   bool freezes = false;  ///< a temperature in degC: below 0 an element may follow another slope
+  /// Its units per unit of a regressor, so that one prior fits all: 10 degC, 10 % of humidity, 10
+  /// m/s of wind.
+  double scale = 10;
 };
 
 /// Turns daily means of weather and use into the regressors of a healthy building: every covariate
@@ -23,9 +26,6 @@ class WeatherLags {
   /// Algerian school lag by days to a fortnight.
   static constexpr double kLags_d[] = {0, 1, 4, 12};
   static constexpr double kYear_d = 365.2425;
-  /// Units of a covariate per unit of its regressor, so that one prior fits all: 10 degC, 10 % of
-  /// humidity, 10 m/s of wind.
-  static constexpr double kScale = 10;
 
   explicit WeatherLags(const std::vector<Covariate>& covariates);
 

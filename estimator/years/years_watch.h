@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "estimator/years/life_budget.h"
 #include "estimator/years/loss_evidence.h"
 #include "estimator/years/weather_lags.h"
 
@@ -25,13 +26,6 @@ class DayMean {
  private:
   int count_ = 0;
   double first_ = 0, weight_ = 0, sum_ = 0, square_ = 0;  ///< sums of values minus the first
-};
-
-/// False alarms that are accepted, with this probability one or more within so many years, and the
-/// least loss that matters, relative.
-struct LifeBudget {
-  double years = 30, probability = 0.05;
-  double least_loss = 0.01;
 };
 
 /// Watches a building's stiffness for years by its daily means: one element against the others,

@@ -126,7 +126,10 @@ class Soak : private daemon::EstimationListener {
   void step(std::int64_t i);
   void published(const std::string& channel, const std::vector<std::uint8_t>& bytes);
   void on_sample(const estimator::AccelSample& sample) override { history_->sample(sample); }
-  void on_temperature(const temperature_t& t) override { history_->temperature(t); }
+  void on_weather(const std::string& channel, std::int64_t time_us,
+                  const std::vector<std::uint8_t>& bytes) override {
+    history_->weather(channel, time_us, bytes);
+  }
   void on_estimate(const estimator::WindowEstimate& e) override;
   void look_at_memory(std::int64_t time_us);
   void compare_sums(const estimator::WindowEstimate& e);

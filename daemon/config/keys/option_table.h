@@ -70,6 +70,7 @@ std::vector<OptionSection> estimator_options();
 std::vector<OptionSection> lcm_options();  ///< also of [commands]
 std::vector<OptionSection> can_options();
 std::vector<OptionSection> watch_options();  ///< also of [gap] and baseline files
+std::vector<OptionSection> weather_options();
 std::vector<OptionSection> history_options();
 std::vector<OptionSection> event_report_options();  ///< also of [fragility] and [actions]
 std::vector<OptionSection> fleet_options();

@@ -118,6 +118,13 @@ const SectionDescription kSections[] = {
     {"can", "[[can]]", "One CAN bus.", Reach::restart},
     {"can_node", "[[can_node]]", "One sender of samples on a CAN bus, and its timing.",
      Reach::restart},
+    {"weather", "[[weather]]",
+     "Optional: weather and use that may change the building, up to 20 of them "
+     "([years](years.md)). The value is scale * raw - offset. The thermometer of [watch] counts as "
+     "`temperature_degc` without a table.",
+     Reach::restart},
+    {"weather.source", "source = { lcm, thermometer or can ... }",
+     "Where the readings of a covariate come from.", Reach::restart},
     {"watch", "[watch]", "Optional: detect lasting stiffness changes and publish them as events.",
      Reach::settings},
     {"gap", "[gap]",

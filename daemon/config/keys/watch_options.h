@@ -6,6 +6,7 @@
 
 #include "estimator/gap/gap.h"
 #include "estimator/watch/watch.h"
+#include "estimator/years/life_budget.h"
 
 namespace framewatch::daemon {
 
@@ -23,6 +24,7 @@ struct WatchSettings {
   estimator::WatchOptions options;
   std::string baseline_path;                    ///< empty for no file
   std::string temperature_channel;              ///< LCM channel of temperature_t; empty for none
+  estimator::LifeBudget life;                   ///< of lasting losses in daily means
   std::optional<estimator::Baseline> baseline;  ///< content of that file, if it exists
 };
 

@@ -53,6 +53,9 @@ class CanConfigReader {
     for (std::size_t i = 0; i < config_.sources.size(); ++i)
       if (!config_.sources[i].can.empty()) read_source(i);
     for (CanNodeReading& node : nodes_) finish_node(node);
+    for (std::size_t i = 0; i < config_.weather.size(); ++i)
+      if (!config_.weather[i].can.empty() && !config_.weather[i].dbc_signal.empty())
+        read_weather_signal(i);
     check_used_messages();
     check_ids();
     config_.doubts = with_file(config_.path, std::move(doubts_));
@@ -245,6 +248,44 @@ class CanConfigReader {
     }
   }
 
+  /// Reads the signal of a covariate.
+  void read_weather_signal(std::size_t covariate) {
+    const WeatherSettings& w = config_.weather[covariate];
+    const TomlValue& table = document_.find("weather")->value.items[covariate];
+    const TextPlace place = table.find("source")->place;
+    const auto problem = [&](const std::string& message) {
+      problems_.push_back({place, fmt::format("weather '{}'.source: {}", w.name, message)});
+    };
+    const auto bus = find_bus(w.can);
+    if (!bus) return problem("can: " + unknown_bus(w.can));
+    if (!buses_[*bus].known) return;
+    const CanSignal found = find_can_signal(buses_[*bus], w.dbc_signal);
+    if (!found.problem.empty()) return problem("dbc_signal: " + found.problem);
+    const DbcMessage& m = *found.message;
+    CanMessageMap map{.name = m.name,
+                      .id = m.id,
+                      .mask = m.extended ? 0x1FFFFFFFu : 0x7FFu,
+                      .extended = m.extended,
+                      .length = m.length,
+                      .fd = m.length > 8,
+                      .switches = switches_of(m, *found.signal),
+                      .readings = {},
+                      .counter = {},
+                      .clock = {}};
+    if (map.fd && !config_.can.buses[*bus].fd)
+      return problem(fmt::format("dbc_signal: {} has {} bytes: fd = true is missing for {}", m.name,
+                                 m.length, w.can));
+    weather_messages_.insert(found.message);
+    config_.can.values.push_back(
+        {static_cast<int>(*bus), std::move(map), found.signal->field, covariate});
+    const bool kelvin = found.signal->unit == "K" || found.signal->unit == "kelvin";
+    if (kelvin && table.find("offset") == nullptr && w.name.ends_with("_degc"))
+      doubts_.push_back(
+          {place,
+           fmt::format("weather '{}': {}:{} says that {} is in kelvin: set offset = 273.15", w.name,
+                       found.message->path, found.signal->line, found.signal->name)});
+  }
+
   /// Warns of a signal with a unit that the channel does not convert, because it has no scale.
   void doubt_unit(std::size_t channel, const CanSignal& found) {
     const std::string& unit = found.signal->unit;
@@ -362,7 +403,7 @@ class CanConfigReader {
   /// Reports the rules that messages with a channel, counter or clock break, at their place in the
   /// DBC file. The other messages may break them, because their frames are not decoded.
   void check_used_messages() {
-    std::set<const CanMessage*> used;
+    std::set<const CanMessage*> used = weather_messages_;
     for (const CanNodeReading& node : nodes_)
       for (const CanMessageMap& map : node.map.messages)
         used.insert(find_can_message(buses_[node.bus], map.name));
@@ -403,6 +444,7 @@ class CanConfigReader {
   std::vector<TextProblem> doubts_;
   std::vector<CanBusReading> buses_;
   std::vector<CanNodeReading> nodes_;
+  std::set<const CanMessage*> weather_messages_;
 };
 
 }  // namespace

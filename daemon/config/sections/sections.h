@@ -49,6 +49,11 @@ LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& proble
 CommandSettings read_commands(const TomlValue& document, std::vector<TextProblem>& problems);
 std::optional<WatchSettings> read_watch(const TomlValue& document,
                                         std::vector<TextProblem>& problems);
+/// Reads every [[weather]]. `config` has the sources of channels.
+std::vector<WeatherSettings> read_weather_tables(const TomlValue& document, const Config& config,
+                                                 std::vector<TextProblem>& problems);
+/// Adds the covariate temperature_degc for the thermometer of [watch] unless [[weather]] names it.
+void add_thermometer(Config& config);
 std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems);
 std::optional<HistorySettings> read_history(const TomlValue& document,
                                             std::vector<TextProblem>& problems);

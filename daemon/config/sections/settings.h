@@ -12,6 +12,7 @@
 #include "daemon/config/keys/history_options.h"
 #include "daemon/config/keys/lcm_options.h"
 #include "daemon/config/keys/watch_options.h"
+#include "daemon/config/keys/weather_options.h"
 #include "daemon/config/sections/config_problems.h"
 #include "drivers/can/can_map.h"
 #include "estimator/pipeline/pipeline.h"
@@ -37,6 +38,7 @@ struct Config {
   LcmSettings lcm;
   CommandSettings commands;
   drivers::CanMap can;                              ///< axes as in pipeline.axes
+  std::vector<WeatherSettings> weather;             ///< with the thermometer of [watch]
   std::optional<WatchSettings> watch;               ///< without it nothing is watched
   std::optional<GapSettings> gap;                   ///< without it nothing is simulated
   std::optional<HistorySettings> history;           ///< without it nothing is kept

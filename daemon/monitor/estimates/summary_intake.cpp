@@ -131,7 +131,8 @@ SummaryIntake::SummaryIntake(const std::string& prefix, std::int64_t shortest_s,
                              std::function<void()> before_other_names)
     : kinds_{{prefix + "ESTIMATE", Kind::estimate}, {prefix + "ESTIMATE_LATE", Kind::late},
              {prefix + "PARAMETERS", Kind::table},  {prefix + "STATUS", Kind::status},
-             {prefix + "EVENT", Kind::event},       {prefix + "ACKNOWLEDGED", Kind::acknowledged}},
+             {prefix + "EVENT", Kind::event},       {prefix + "ACKNOWLEDGED", Kind::acknowledged},
+             {prefix + "WEATHER", Kind::weather}},
       before_other_names_(std::move(before_other_names)),
       collector_(kSecond_us * shortest_s) {}
 
@@ -180,6 +181,12 @@ SummaryIntake::Taken SummaryIntake::take(Kind kind, std::span<const std::uint8_t
         batch_.acknowledged.push_back(std::move(*a));
         out.news = true;
       }
+      break;
+    case Kind::weather:
+      if (auto w = drivers::decoded<weather_status_t>(bytes))
+        for (std::size_t c = 0; c < w->name.size(); ++c)
+          if (std::isfinite(w->mean[c]))
+            batch_.weather.push_back({std::move(w->name[c]), w->mean_us[c], w->mean[c]});
       break;
   }
   return out;

@@ -15,6 +15,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/weather_status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 namespace framewatch::daemon {
@@ -96,6 +97,13 @@ class PeriodCollector {
   std::map<std::int64_t, PeriodData> late_;  ///< by start of the period
 };
 
+/// The mean of readings of a covariate that came within a second or so.
+struct WeatherReading {
+  std::string name;
+  std::int64_t time_us;
+  double value;
+};
+
 /// The data that one transaction stores.
 struct SummaryBatch {
   parameter_table_t parameters{};     ///< of all its periods
@@ -103,14 +111,17 @@ struct SummaryBatch {
   std::vector<PeriodData> periods;
   std::vector<event_t> events;
   std::vector<acknowledged_t> acknowledged;
+  std::vector<WeatherReading> weather;  ///< in order of time
 
-  bool empty() const { return periods.empty() && events.empty() && acknowledged.empty(); }
+  bool empty() const {
+    return periods.empty() && events.empty() && acknowledged.empty() && weather.empty();
+  }
 };
 
 /// Collects the messages of an estimation into the batches that a SummaryStore takes.
 class SummaryIntake {
  public:
-  enum class Kind { estimate, late, table, status, event, acknowledged };
+  enum class Kind { estimate, late, table, status, event, acknowledged, weather };
   struct Taken {
     bool period = false;  ///< the message ended a period
     bool news = false;    ///< it was an event or an acknowledgement

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include <framewatch/temperature_t.hpp>
+
 #include "daemon/base/usual_time.h"
 #include "daemon/config/config_size.h"
 #include "daemon/monitor/estimation/estimation_events.h"
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/identify/groups/layout_prediction.h"
 #include "estimator/numeric/nan.h"
@@ -89,9 +92,12 @@ Estimation::Estimation(const Config& config, MessageSink sink, EstimationListene
       can_events_(config.can),
       channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s),
       stamp_events_(config.pipeline.axes, config.pipeline.options),
-      newest_us_(config.pipeline.axes.size(), INT64_MIN) {
+      newest_us_(config.pipeline.axes.size(), INT64_MIN),
+      weather_(config) {
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
+  can_.on_value(
+      [this](std::size_t covariate, double value, std::int64_t) { can_value(covariate, value); });
   begin_watch();
   begin_gap();
   if (!config.event_report) return;
@@ -216,8 +222,10 @@ void Estimation::watch(const estimator::WindowEstimate& estimate) {
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
                                           std::size_t size, const drivers::LcmSender& sender,
                                           std::int64_t received_us) {
-  if (config_.watch && channel == config_.watch->temperature_channel)
-    return temperature(data, size);
+  const std::span<const std::uint8_t> bytes(static_cast<const std::uint8_t*>(data), size);
+  const bool of_watch = config_.watch && channel == config_.watch->temperature_channel;
+  if (of_watch || weather_.hears_thermometer(channel)) return temperature(channel, bytes);
+  if (weather_.hears(channel)) return weather(channel, bytes);
   arrival_us_ = received_us;
   const drivers::IntakeResult result = intake_.message(channel, data, size, sender, received_us);
   arrival_us_ = 0;
@@ -230,18 +238,36 @@ void Estimation::frame(int bus, const drivers::CanFrame& frame) {
   arrival_us_ = 0;
 }
 
-drivers::IntakeResult Estimation::temperature(const void* data, std::size_t size) {
-  const auto message =
-      drivers::decoded<temperature_t>({static_cast<const std::uint8_t*>(data), size});
+drivers::IntakeResult Estimation::temperature(const std::string& channel,
+                                              std::span<const std::uint8_t> bytes) {
+  const auto message = drivers::decoded<temperature_t>(bytes);
   if (!message) return drivers::IntakeResult::malformed;
+  weather_.thermometer(channel, message->time_us, message->temperature_degc, seconds_.newest_us());
   if (!(std::abs(message->temperature_degc) <= kMost_degc)) {
     ++absurd_temperatures_;
     return drivers::IntakeResult::malformed;
   }
-  if (watch_)
+  if (watch_ && channel == config_.watch->temperature_channel)
     watch_->temperature(estimator::from_microseconds(message->time_us), message->temperature_degc);
-  listener_->on_temperature(*message);
+  listener_->on_weather(channel, message->time_us, {bytes.begin(), bytes.end()});
   return drivers::IntakeResult::table;
+}
+
+drivers::IntakeResult Estimation::weather(const std::string& channel,
+                                          std::span<const std::uint8_t> bytes) {
+  const auto message = drivers::decoded<weather_t>(bytes);
+  if (!message) return drivers::IntakeResult::malformed;
+  if (!weather_.take(channel, *message, seconds_.newest_us()))
+    return drivers::IntakeResult::foreign;
+  listener_->on_weather(channel, message->time_us, {bytes.begin(), bytes.end()});
+  return drivers::IntakeResult::table;
+}
+
+void Estimation::can_value(std::size_t covariate, double value) {
+  const weather_t reading = weather_.can_value(covariate, value, seconds_.newest_us());
+  if (!reading.name.empty())
+    listener_->on_weather(config_.weather[covariate].lcm_channel, reading.time_us,
+                          drivers::encoded(reading));
 }
 
 void Estimation::notice(const drivers::CanNotice& notice) {
@@ -306,6 +332,7 @@ void Estimation::publish_state() {
   }
   for (const event_t& event : stamp_events_.update(lost, seconds_.newest_us())) announce(event);
   if (const auto event = clock_events_.update(seconds_.newest_us(), arrival_us_)) announce(*event);
+  for (const event_t& event : weather_.update(seconds_.newest_us())) announce(event);
   for (event_t event : std::vector<event_t>(raised_.all())) {
     if (!green_and_past(event, seconds_.newest_us())) continue;
     event.state = event_state::cleared;
@@ -346,6 +373,7 @@ void Estimation::publish_state() {
   publisher_.parameters(seconds_.newest_us(), pipeline_);
   publisher_.status(std::move(status));
   if (watch_) publisher_.watch(seconds_.newest_us(), *watch_);
+  if (weather_.any()) publisher_.weather(weather_.status(seconds_.newest_us()));
 }
 
 void Estimation::follow_recovery(const estimator::WindowEstimate& estimate) {

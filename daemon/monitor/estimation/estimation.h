@@ -3,17 +3,18 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <framewatch/event_t.hpp>
-#include <framewatch/temperature_t.hpp>
 
 #include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/input_events.h"
 #include "daemon/monitor/estimation/publisher.h"
 #include "daemon/monitor/estimation/stamp_events.h"
+#include "daemon/monitor/estimation/weather_intake.h"
 #include "daemon/monitor/event_report/event_report.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "drivers/can/can_intake.h"
@@ -70,7 +71,10 @@ class EstimationListener {
 
   /// A sample, before the pipeline takes it.
   virtual void on_sample(const estimator::AccelSample& /*sample*/) {}
-  virtual void on_temperature(const temperature_t& /*temperature*/) {}
+  /// A message about weather that could be read: temperature_t or weather_t, which records keep. A
+  /// CAN signal comes as weather_t.
+  virtual void on_weather(const std::string& /*channel*/, std::int64_t /*time_us*/,
+                          const std::vector<std::uint8_t>& /*bytes*/) {}
   /// A calibrated instant.
   virtual void on_instant(const estimator::SampleSet& /*instant*/) {}
   /// An estimate of the main window, before it is published.
@@ -162,7 +166,10 @@ class Estimation {
   template <typename Visit>
   void each_section(const Visit& visit);
   void publish_state();
-  drivers::IntakeResult temperature(const void* data, std::size_t size);
+  drivers::IntakeResult temperature(const std::string& channel,
+                                    std::span<const std::uint8_t> bytes);
+  drivers::IntakeResult weather(const std::string& channel, std::span<const std::uint8_t> bytes);
+  void can_value(std::size_t covariate, double value);
   void take(estimator::Pipeline::Results&& results);
   bool speaks_of_building() const;
   void watch(const estimator::WindowEstimate& estimate);
@@ -208,6 +215,7 @@ class Estimation {
   LiveState live_;
   std::int64_t windows_ = 0;
   std::int64_t absurd_temperatures_ = 0;
+  WeatherIntake weather_;
 };
 
 }  // namespace framewatch::daemon

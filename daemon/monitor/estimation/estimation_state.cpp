@@ -43,6 +43,7 @@ std::vector<std::string> kinds_of(const std::string& section) {
   if (section == "counts") return {"clock_step"};
   if (section == "window")
     return {"absurd_samples", "channel_silent", "channel_stuck", "channel_rate", "channel_clock"};
+  if (section == "weather") return {"weather"};
   if (section == "watch") return {"stiffness_change"};
   if (section == "gap") return {"gap", "channel_doubted"};
   return {};
@@ -60,6 +61,7 @@ void Estimation::each_section(const Visit& visit) {
     for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMaxCount);
   });
   visit("events", [this](auto& a) { a(raised_); });
+  if (weather_.any()) visit("weather", [this](auto& a) { a(weather_); });
   visit("lcm", [this](auto& a) { a(intake_); });
   visit("can", [this](auto& a) { a(can_, can_events_); });
   visit("tuning", [this](auto& a) {
@@ -164,6 +166,7 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   copy(before.stamp_events_, stamp_events_);
   copy(before.clock_events_, clock_events_);
   copy(before.raised_, raised_);
+  copy(before.weather_, weather_);
   windows_ = before.windows_;
   absurd_temperatures_ = before.absurd_temperatures_;
   newest_us_ = before.newest_us_;

@@ -160,6 +160,10 @@ void Publisher::watch(std::int64_t time_us, const estimator::Watch& watch) {
   send(time_us, config_.lcm.prefix + "WATCH", m);
 }
 
+void Publisher::weather(const weather_status_t& weather) {
+  send(weather.time_us, config_.lcm.prefix + "WEATHER", weather);
+}
+
 void Publisher::model(const estimator::ModelFit& fit) {
   if (!sink_) return;
   framewatch::model_fit_t& m = model_;

@@ -12,6 +12,7 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/watch_t.hpp>
+#include <framewatch/weather_status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
@@ -56,6 +57,7 @@ class Publisher {
   void event(const event_t& event);
   /// Publishes the baselines with which changes are compared.
   void watch(std::int64_t time_us, const estimator::Watch& watch);
+  void weather(const weather_status_t& weather);
   void gap(const estimator::GapWindow& window);
   void model(const estimator::ModelFit& fit);
   /// Publishes the counters of `status`, which are by axis. Adds the names of the axes, the

@@ -26,10 +26,11 @@ struct Description {
 };
 
 /// Returns the sections in the order of the file.
-const std::array<Description, 10>& descriptions() {
-  static const std::array<Description, 10> all{{
+const std::array<Description, 11>& descriptions() {
+  static const std::array<Description, 11> all{{
       {"counts", "counters of windows start at 0", {}},
       {"events", "raised findings and their acknowledgements are forgotten", {}},
+      {"weather", "the readings of weather count as first ones", {"weather", "watch"}},
       {"lcm", "all nodes count as new", {"channel", "lcm"}},
       {"can", "all CAN nodes count as new", {"channel", "can", "estimator"}},
       {"tuning", "filters are tuned again", {"structure", "channel", "parameters"}},
@@ -62,6 +63,7 @@ constexpr std::int32_t kOldestFormat = 17;  ///< the oldest that is read
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMaxBytes = std::int64_t{1} << 30;
 constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head; a real one has about ten
+constexpr std::string_view kLaterSection = "weather";  // older files of the same format lack it
 constexpr const char* kUnlike = "has impossible sizes or numbers";
 
 /// Archives a list of the head, with its length.
@@ -214,7 +216,8 @@ void leave_what_fits(ReadState& read, const Config& config, Estimation& estimati
     if (section_of(read, name) != nullptr) {
       if (const std::string other = other_grounds(name, read.state, grounds); !other.empty())
         lose(read, name, "was written under another configuration: " + other);
-    } else if (std::ranges::find(read.lost, name, &LostSection::name) == read.lost.end()) {
+    } else if (name != kLaterSection &&
+               std::ranges::find(read.lost, name, &LostSection::name) == read.lost.end()) {
       read.lost.push_back({name, "is not in the file"});
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/history.h"
 
+#include <algorithm>
 #include <csignal>
 #include <utility>
 
@@ -27,11 +28,6 @@ History::History(const Config& config)
 
 History::~History() {
   raw_.finish();
-}
-
-void History::temperature(const temperature_t& temperature) {
-  raw_.message(config_.watch->temperature_channel, temperature.time_us,
-               drivers::encoded(temperature));
 }
 
 void History::tick(std::int64_t now_us) {
@@ -128,6 +124,24 @@ HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(conf
   if (!config.history) return;
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then is an error like a full disk
   history_.emplace(config);
+  if (config.watch) losses_.emplace(config);
+}
+
+/// Returns the events of new lasting losses.
+std::vector<event_t> HistoryReport::losses(const history_status_t& status, std::int64_t now_us) {
+  if (!losses_) return {};
+  // A clock that is ahead shows days that are not over.
+  const bool stored = status.summary_until_us > 0 && status.raw_samples > 0;
+  LossMonitor::News news = losses_->update(
+      stored ? std::min({status.summary_until_us, status.time_us, now_us}) : INT64_MIN);
+  for (const event_t& event : news.before.all()) {
+    raised_.note(event);
+    if (const Acknowledgement* by = news.before.acknowledgement(event.id))
+      raised_.acknowledge(event.id, *by);
+  }
+  if (!news.problem.empty())
+    unread_(now_us, "lasting losses: cannot read the history: " + news.problem);
+  return std::move(news.events);
 }
 
 std::vector<event_t> HistoryReport::update(std::int64_t now_us) {
@@ -138,9 +152,10 @@ std::vector<event_t> HistoryReport::update(std::int64_t now_us) {
   lcm_.publish(config_.lcm.prefix + "HISTORY", &status);
   const std::string channel = config_.lcm.prefix + "EVENT";
   std::vector<event_t> news = monitor_.update(now_us, status, history_->set_aside());
+  for (event_t& event : losses(status, now_us)) news.push_back(std::move(event));
   for (const event_t& event : news) {
     log(event.state != event_state::cleared ? LogLevel::error : LogLevel::notice,
-        "history: " + event.message);
+        event.kind + ": " + event.message);
     const std::vector<std::uint8_t> bytes = drivers::encoded(event);
     lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
     history_->message(channel, bytes);

@@ -10,13 +10,14 @@
 
 #include <framewatch/event_t.hpp>
 #include <framewatch/history_status_t.hpp>
-#include <framewatch/temperature_t.hpp>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/log.h"
 #include "daemon/base/sqlite_file.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/history/history_keeper.h"
+#include "daemon/monitor/history/loss_monitor.h"
 #include "daemon/monitor/history/raw_history.h"
 #include "daemon/monitor/history/summary_history.h"
 
@@ -32,7 +33,11 @@ class History {
   ~History();
 
   void sample(const estimator::AccelSample& sample) { raw_.sample(sample); }
-  void temperature(const temperature_t& temperature);
+  /// Stores a message about weather among the raw samples.
+  void weather(const std::string& channel, std::int64_t time_us,
+               const std::vector<std::uint8_t>& bytes) {
+    raw_.message(channel, time_us, bytes);
+  }
   /// Stores a message that the estimation published.
   void message(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
     summaries_.message(channel, bytes);
@@ -78,7 +83,8 @@ class HistoryMonitor {
 };
 
 /// Owns the history of a running estimation, if one is configured, and reports on it:
-/// history_status_t every second, events and log lines when writing fails or works again.
+/// history_status_t every second, events and log lines when writing fails or works again. With
+/// [watch] it also finds lasting losses.
 class HistoryReport {
  public:
   /// `config` and `lcm` must outlive this.
@@ -87,7 +93,10 @@ class HistoryReport {
   /// Returns nullptr if no history is configured.
   History* history() { return history_ ? &*history_ : nullptr; }
   /// Writes everything to the disk and ends the history.
-  void close() { history_.reset(); }
+  void close() {
+    losses_.reset();
+    history_.reset();
+  }
   /// Returns its raised events.
   RaisedEvents& raised() { return raised_; }
   /// Stores what is due and publishes. Call it several times a second; `now_us`: host clock.
@@ -95,12 +104,16 @@ class HistoryReport {
   std::vector<event_t> update(std::int64_t now_us);
 
  private:
+  std::vector<event_t> losses(const history_status_t& status, std::int64_t now_us);
+
   const Config& config_;
   lcm::LCM& lcm_;
   OnceASecond second_;
   HistoryMonitor monitor_;
   RaisedEvents raised_;
   std::optional<History> history_;
+  std::optional<LossMonitor> losses_;
+  RateLimitedLog unread_{LogLevel::warning};
 };
 
 }  // namespace framewatch::daemon

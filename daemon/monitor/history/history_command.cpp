@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/history/history_command.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
 #include "daemon/base/mat_file.h"
 #include "daemon/base/printable.h"
@@ -19,6 +23,7 @@
 #include "daemon/monitor/history/history_losses.h"
 #include "daemon/monitor/history/history_overview.h"
 #include "daemon/monitor/history/history_report.h"
+#include "daemon/monitor/history/loss_follower.h"
 #include "daemon/monitor/history/raw_export.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "daemon/monitor/history/weather_table.h"
@@ -159,19 +164,56 @@ void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQ
     }
 }
 
+/// Writes the hours of weather. A history without any is a problem.
+void give_weather(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries,
+                  std::vector<std::string>& problems) {
+  const std::vector<WeatherHour> hours = summaries.weather(r.from_us, r.to_us);
+  if (!summaries.problem().empty()) {
+    problems.push_back(fmt::format("{}: {}", summary_file(r.directory), summaries.problem()));
+  } else if (hours.empty()) {
+    problems.push_back(fmt::format("{}: no weather is kept of this time", r.directory));
+  } else {
+    drivers::TextOutput out;
+    if (!out.open(a.weather_out) || !out.write(weather_csv(hours)) || !out.close())
+      problems.push_back(fmt::format("{}: {}", a.weather_out, out.error()));
+  }
+}
+
 int fail(const std::vector<std::string>& problems) {
   for (const std::string& message : problems) fmt::print(stderr, "{}\n", printable_lines(message));
   return kBadInput;
+}
+
+/// Returns the covariates that a history keeps for these days.
+std::optional<WeatherTable> kept_weather(const HistoryRequest& r, SummaryQuery& summaries,
+                                         const std::vector<ElementDays>& elements) {
+  std::int64_t first = INT64_MAX, last = INT64_MIN;
+  for (const ElementDays& e : elements) {
+    first = std::min(first, e.days.begin()->first);
+    last = std::max(last, e.days.rbegin()->first);
+  }
+  if (elements.empty()) return WeatherTable{};
+  std::vector<WeatherSpan> spans = summaries.weather_spans();
+  for (WeatherSpan& s : spans) {  // readings before --from do not count
+    s.first_us = std::max(s.first_us, r.from_us);
+    s.last_us = std::min(s.last_us, r.to_us);
+  }
+  std::vector<std::string> names;
+  for (const WeatherSpan& s : lasting_covariates(spans, first, last + 1)) names.push_back(s.name);
+  return weather_of(summaries.weather(first * kDay_us, r.to_us), names);
 }
 
 /// Finds losses in the daily means, shows them and writes the page. Returns the exit code: 1 when
 /// there is a loss.
 int show_years(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries) {
   std::vector<std::string> problems;
-  const auto weather = a.weather.empty() ? WeatherTable{} : read_weather(a.weather, problems);
-  if (!weather) return fail(problems);
   const std::vector<ElementDays> elements = read_days(r, summaries);
-  const HistoryLosses losses = find_losses(elements, *weather);
+  const auto weather =
+      a.weather.empty() ? kept_weather(r, summaries, elements) : read_weather(a.weather, problems);
+  if (!weather) return fail(problems);
+  const HistoryLosses losses =
+      find_losses(elements, *weather,
+                  r.config && r.config->watch ? r.config->watch->life : estimator::LifeBudget{});
   std::string page;
   if (!a.report.empty() && !elements.empty())
     page = history_page(summaries.structure(), elements, losses, *weather,
@@ -193,15 +235,19 @@ int history(const HistoryArguments& a) {
   SummaryQuery summaries;
   const auto request = read_history_request(a, summaries, problems);
   if (!request) return fail(problems);
+  if (!a.weather_out.empty()) give_weather(a, *request, summaries, problems);
+  if (!problems.empty()) return fail(problems);
   if (a.losses || !a.report.empty()) return show_years(a, *request, summaries);
-  const bool asks = !a.out.empty() || !a.raw.empty() || a.events || !a.parameters.empty() ||
-                    a.period_s != 0 || !a.from.empty() || !a.to.empty() || !a.last.empty();
+  const bool asks = !a.weather_out.empty() || !a.out.empty() || !a.raw.empty() || a.events ||
+                    !a.parameters.empty() || a.period_s != 0 || !a.from.empty() || !a.to.empty() ||
+                    !a.last.empty();
   if (!asks)
     fmt::print("{}", a.json ? history_json(request->directory, summaries)
                             : printable_lines(history_overview(request->directory, summaries)));
   if (a.events) print_events(*request, summaries);
   if (!a.raw.empty()) export_raw_history(a, *request, problems);
-  const bool wants_summaries = !a.out.empty() || (asks && !a.events && a.raw.empty());
+  const bool wants_summaries =
+      !a.out.empty() || (asks && !a.events && a.raw.empty() && a.weather_out.empty());
   if (wants_summaries && problems.empty()) give_summaries(a, *request, summaries, problems);
   if (const std::string why = summaries.problem(); !why.empty())
     problems.push_back(fmt::format("{}: {}", summary_file(request->directory), why));

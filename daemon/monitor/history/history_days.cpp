@@ -15,7 +15,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kHour_s = 3600;
 constexpr double kWindow_s = 5;    // if no configuration says the length
 constexpr std::size_t kDate = 10;  // characters
 
@@ -51,32 +50,52 @@ double ElementDays::usual() const {
   return median(std::move(medians));
 }
 
+estimator::DayValue ElementDays::value(std::int64_t day) const {
+  const auto found = days.find(day);
+  return (found == days.end() ? estimator::DayMean() : found->second.mean).mean();
+}
+
+std::int64_t floor_day(std::int64_t time_us) {
+  return time_us / kDay_us - (time_us % kDay_us < 0 ? 1 : 0);
+}
+
+bool is_frame_stiffness(const std::string& parameter) {
+  return parameter.starts_with("kx_") || parameter.starts_with("ky_");
+}
+
+ElementDays element_days(const SummaryParameter& parameter, SummaryQuery& summaries,
+                         std::int64_t period_s, double window_s, std::int64_t from_us,
+                         std::int64_t to_us) {
+  std::map<std::int64_t, Hours> days;
+  for (const SummaryRow& row : summaries.rows(parameter.id, period_s, from_us, to_us)) {
+    Hours& of_day = days[floor_day(row.start_us)];
+    of_day.windows += row.windows;
+    if (row.observable <= 0 || !std::isfinite(row.mean)) continue;
+    of_day.observable += row.observable;
+    of_day.mean.push(row.mean, error_of_mean(row, period_s, window_s));
+    of_day.q1.push_back(row.q1);
+    of_day.median.push_back(row.median);
+    of_day.q3.push_back(row.q3);
+  }
+  ElementDays out{parameter.name, {}};
+  for (auto& [day, h] : days)
+    if (h.observable > 0)
+      out.days.emplace(day,
+                       DayOfElement{h.mean, median(std::move(h.q1)), median(std::move(h.median)),
+                                    median(std::move(h.q3)),
+                                    static_cast<double>(h.observable) /
+                                        static_cast<double>(std::max<std::int64_t>(h.windows, 1))});
+  return out;
+}
+
 std::vector<ElementDays> read_days(const HistoryRequest& r, SummaryQuery& summaries) {
   const std::int64_t period_s = period_of(summaries);
   const double window_s = r.config ? r.config->pipeline.options.window_s : kWindow_s;
   std::vector<ElementDays> out;
   for (const SummaryParameter& p : r.parameters) {
-    if (!p.name.starts_with("kx_") && !p.name.starts_with("ky_")) continue;
-    std::map<std::int64_t, Hours> days;
-    for (const SummaryRow& row : summaries.rows(p.id, period_s, r.from_us, r.to_us)) {
-      Hours& of_day = days[row.start_us / kDay_us];
-      of_day.windows += row.windows;
-      if (row.observable <= 0 || !std::isfinite(row.mean)) continue;
-      of_day.observable += row.observable;
-      of_day.mean.push(row.mean, error_of_mean(row, period_s, window_s));
-      of_day.q1.push_back(row.q1);
-      of_day.median.push_back(row.median);
-      of_day.q3.push_back(row.q3);
-    }
-    ElementDays element{p.name, {}};
-    for (auto& [day, h] : days)
-      if (h.observable > 0)
-        element.days.emplace(
-            day, DayOfElement{h.mean, median(std::move(h.q1)), median(std::move(h.median)),
-                              median(std::move(h.q3)),
-                              static_cast<double>(h.observable) /
-                                  static_cast<double>(std::max<std::int64_t>(h.windows, 1))});
-    if (!element.days.empty()) out.push_back(std::move(element));
+    if (!is_frame_stiffness(p.name)) continue;
+    ElementDays days = element_days(p, summaries, period_s, window_s, r.from_us, r.to_us);
+    if (!days.days.empty()) out.push_back(std::move(days));
   }
   return out;
 }

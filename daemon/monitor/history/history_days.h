@@ -22,11 +22,24 @@ struct DayOfElement {
 
 struct ElementDays {
   std::string name;
-  std::map<std::int64_t, DayOfElement> days;  ///< by day since 1970, UTC; at least one
+  std::map<std::int64_t, DayOfElement> days;  ///< by day since 1970, UTC
 
-  /// Returns the median of all days.
+  /// Returns the median of all days; there must be one.
   double usual() const;
+  /// Returns the value of a day; NaN: none.
+  estimator::DayValue value(std::int64_t day) const;
 };
+
+/// Returns the day since 1970, UTC.
+std::int64_t floor_day(std::int64_t time_us);
+/// Returns true for the stiffness of a frame.
+bool is_frame_stiffness(const std::string& parameter);
+
+/// Reads the days of a parameter from summaries of this length that start in [from_us, to_us).
+/// window_s: length of the windows.
+ElementDays element_days(const SummaryParameter& parameter, SummaryQuery& summaries,
+                         std::int64_t period_s, double window_s, std::int64_t from_us,
+                         std::int64_t to_us);
 
 /// Reads the frame stiffnesses of a request day by day. Elements without any value are left out.
 std::vector<ElementDays> read_days(const HistoryRequest& request, SummaryQuery& summaries);

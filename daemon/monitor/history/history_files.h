@@ -9,6 +9,7 @@ namespace framewatch::daemon {
 
 /// Later than any time in a history; -kEver_us is earlier than any.
 inline constexpr std::int64_t kEver_us = INT64_MAX / 4;
+inline constexpr std::int64_t kHour_s = 3600;
 
 /// Paths in a history's directory.
 std::string raw_folder(const std::string& directory);    ///< raw logs

@@ -31,8 +31,10 @@ std::string element_name(const HistoryLosses& l, int element) {
 
 }  // namespace
 
-HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather) {
+HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather,
+                          const estimator::LifeBudget& budget) {
   HistoryLosses out;
+  out.budget = budget;
   for (const estimator::Covariate& c : weather.covariates) out.covariates.push_back(c.name);
   if (elements.empty()) return out;
   out.from_day = elements[0].days.begin()->first;
@@ -42,13 +44,10 @@ HistoryLosses find_losses(const std::vector<ElementDays>& elements, const Weathe
     out.from_day = std::min(out.from_day, e.days.begin()->first);
     out.to_day = std::max(out.to_day, e.days.rbegin()->first);
   }
-  estimator::YearsWatch watch(elements.size(), weather.covariates, estimator::LifeBudget{});
+  estimator::YearsWatch watch(elements.size(), weather.covariates, budget);
   for (std::int64_t day = out.from_day; day <= out.to_day; ++day) {
     std::vector<estimator::DayValue> values;
-    for (const ElementDays& e : elements) {
-      const auto found = e.days.find(day);
-      values.push_back((found == e.days.end() ? estimator::DayMean() : found->second.mean).mean());
-    }
+    for (const ElementDays& e : elements) values.push_back(e.value(day));
     if (const auto loss = watch.push(static_cast<double>(day), values, weather.of(day)))
       out.found.push_back(*loss);
   }
@@ -62,15 +61,19 @@ HistoryLosses find_losses(const std::vector<ElementDays>& elements, const Weathe
   return out;
 }
 
+std::string probability_text(double probability) {
+  return fmt::format("{:.4g} %", 100 * probability);
+}
+
 std::string losses_sentence(const HistoryLosses& l) {
-  const estimator::LifeBudget budget;
   return fmt::format(
-      "{} of at least {:.0f} % that weather does not explain; a false one in {:.0f} years has a "
-      "probability of {:.0f} %",
+      "{} of at least {} that weather does not explain; a false one in {:g} years has a "
+      "probability of {}",
       l.found.empty()       ? "no loss"
       : l.found.size() == 1 ? "1 loss"
                             : fmt::format("{} losses", l.found.size()),
-      100 * budget.least_loss, budget.years, 100 * budget.probability);
+      probability_text(l.budget.least_loss), l.budget.years,
+      probability_text(l.budget.probability));
 }
 
 std::string loss_sentence(const HistoryLosses& l, const estimator::YearsWatch::Finding& f) {

@@ -23,13 +23,17 @@ struct HistoryLosses {
     estimator::LossEvidence::Step step;
   };
   std::vector<State> state;  ///< by element, then of all of them alike
+  estimator::LifeBudget budget;
 };
 
 /// Watches the elements by their daily means, from the first day on.
-HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather);
+HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather,
+                          const estimator::LifeBudget& budget);
 
 /// Returns how many losses there are, and what that means.
 std::string losses_sentence(const HistoryLosses& losses);
+/// Returns "5 %" or "0.01 %".
+std::string probability_text(double probability);
 std::string loss_sentence(const HistoryLosses& losses,
                           const estimator::YearsWatch::Finding& finding);
 /// Returns a row for each element, and one for all alike: name, median in N/m, evidence, most

@@ -95,6 +95,9 @@ class RequestReader {
     const bool of_years = a_.losses || !a_.report.empty();
     if (of_years && (!a_.out.empty() || !a_.raw.empty() || a_.events))
       problem("--losses and --report cannot be combined with --out, --raw or --events");
+    if (!a_.weather_out.empty() && !a_.weather_out.ends_with(".csv") &&
+        !a_.weather_out.ends_with(".csv.gz"))
+      problem(a_.weather_out + ": the name for weather must end in .csv or .csv.gz");
     if (!a_.weather.empty() && !of_years) problem("--weather needs --losses or --report");
     if (const std::string rule = problem_of_page_name(a_.report); !rule.empty()) problem(rule);
     if (!a_.raw.empty())

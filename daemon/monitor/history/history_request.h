@@ -25,8 +25,10 @@ struct HistoryArguments {
   std::string network = "XX", station = "FRAME";  ///< for miniSEED
   bool events = false;
   bool losses = false;
-  std::string report;   ///< page about months or years
-  std::string weather;  ///< table for --losses and --report, see read_weather(); empty: none
+  std::string report;  ///< page about months or years
+  std::string
+      weather;  ///< table for --losses and --report, see read_weather(); empty: the kept one
+  std::string weather_out;  ///< table of the kept weather: .csv, .csv.gz
   bool json = false;
 };
 

@@ -102,7 +102,24 @@ CREATE TABLE acknowledgement (
   PRIMARY KEY (kind, id, time_us)
 ) WITHOUT ROWID;
 )sql",
+    R"sql(
+CREATE TABLE covariate (
+  id   INTEGER PRIMARY KEY,
+  name TEXT NOT NULL UNIQUE
+);
+CREATE TABLE weather (
+  covariate INTEGER NOT NULL REFERENCES covariate,
+  start_us  INTEGER NOT NULL,
+  readings  INTEGER NOT NULL,
+  mean      REAL NOT NULL,
+  min       REAL NOT NULL,
+  max       REAL NOT NULL,
+  last_us   INTEGER NOT NULL,
+  PRIMARY KEY (covariate, start_us)
+) WITHOUT ROWID;
+)sql",
 };
+constexpr std::int64_t kOldestRead = 2;  // SummaryQuery::weather() knows that its tables may miss
 
 std::int64_t version_of(SqliteFile& file) {
   SqliteStatement version = file.prepare("PRAGMA user_version");
@@ -171,6 +188,14 @@ std::string version_problem(SqliteFile& file, std::span<const char* const> steps
                        wanted);
   return fmt::format("has schema {}, not {}: start `framewatch run` to upgrade it", version,
                      wanted);
+}
+
+std::string history_read_problem(SqliteFile& file) {
+  const std::int64_t version = version_of(file);
+  const std::span<const char* const> steps = history_schema();
+  if (version < kOldestRead || version >= static_cast<std::int64_t>(steps.size()))
+    return version_problem(file, steps);
+  return foreign_part(file, steps.first(static_cast<std::size_t>(version)));
 }
 
 }  // namespace framewatch::daemon

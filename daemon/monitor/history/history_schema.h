@@ -22,4 +22,8 @@ std::string upgrade(SqliteFile& file, std::span<const char* const> steps);
 /// read; empty if it can.
 std::string version_problem(SqliteFile& file, std::span<const char* const> steps);
 
+/// Returns why the database of a history cannot be read; empty if it can. Databases of the version
+/// before can.
+std::string history_read_problem(SqliteFile& file);
+
 }  // namespace framewatch::daemon

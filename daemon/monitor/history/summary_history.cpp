@@ -36,8 +36,9 @@ void SummaryHistory::message(const std::string& channel, const std::vector<std::
   if (!kind) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (queued_ + bytes.size() > kQueueBytes) {
-    counters_.dropped +=
-        *kind != SummaryIntake::Kind::table && *kind != SummaryIntake::Kind::status;
+    counters_.dropped += *kind != SummaryIntake::Kind::table &&
+                         *kind != SummaryIntake::Kind::status &&
+                         *kind != SummaryIntake::Kind::weather;
     return;
   }
   queued_ += bytes.size();
@@ -141,6 +142,7 @@ void SummaryHistory::commit() {
     waiting().periods.clear();
     waiting().events.clear();
     waiting().acknowledged.clear();
+    waiting().weather.clear();
   } else {
     next_commit_ = Clock::now() + kAgain;
     store_.close();  // after a failure of the disk the path may name another file
@@ -171,6 +173,7 @@ void SummaryHistory::bound() {
   };
   bound_news(waiting().events);
   bound_news(waiting().acknowledged);
+  bound_news(waiting().weather);
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.dropped += dropped;
 }

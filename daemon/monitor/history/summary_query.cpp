@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config/keys/weather_options.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_schema.h"
 #include "drivers/files/input_file.h"
@@ -24,6 +25,33 @@ constexpr const char* kSummaryRow =
     "SELECT start_us, last_us, windows, observable, mean, std_error, min, whisker_low, q1, median,"
     " q3, whisker_high, max, outliers, boxed FROM summary JOIN period USING (period_s, start_us)"
     " WHERE parameter = ? AND period_s = ?";
+
+constexpr const char* kEvent =
+    "SELECT kind, id, time_us, state, since_us, severity, place, value, std_error, unit, message,"
+    " segment FROM event";
+
+/// Returns the rows of a statement that selects events, the newest first, in order of time.
+std::vector<event_t> events_in_order(SqliteStatement& s) {
+  std::vector<event_t> out;
+  while (s.row()) {
+    event_t e{};
+    e.kind = s.text(0);
+    e.id = s.integer(1);
+    e.time_us = s.integer(2);
+    e.state = static_cast<std::int32_t>(s.integer(3));
+    e.since_us = s.integer(4);
+    e.severity = static_cast<std::int32_t>(s.integer(5));
+    e.place = s.text(6);
+    e.value = s.number(7);
+    e.std_error = s.number(8);
+    e.unit = s.text(9);
+    e.message = s.text(10);
+    e.segment = s.text(11);
+    out.push_back(std::move(e));
+  }
+  std::reverse(out.begin(), out.end());
+  return out;
+}
 
 SummaryRow summary_row(SqliteStatement& s) {
   SummaryRow r;
@@ -51,7 +79,7 @@ std::string SummaryQuery::open(const std::string& directory) {
     return upgrade(file_, history_schema());
   }
   if (!file_.open_to_read(path)) return told(file_.error());
-  return told(version_problem(file_, history_schema()));
+  return told(history_read_problem(file_));
 }
 
 std::string SummaryQuery::problem() const {
@@ -111,6 +139,41 @@ std::optional<SummaryRow> SummaryQuery::newest_row(std::int64_t parameter, std::
   return summary_row(s);
 }
 
+std::optional<std::int64_t> SummaryQuery::first_us(std::int64_t period_s, std::int64_t from_us) {
+  SqliteStatement s = file_.prepare(
+      fmt::format("SELECT min(start_us) FROM period{} AND period_s = ? AND start_us >= ?", kSound));
+  s.bind(1, period_s).bind(2, from_us);
+  if (!s.row() || s.null(0)) return std::nullopt;
+  return s.integer(0);
+}
+
+std::vector<WeatherSpan> SummaryQuery::weather_spans() {
+  SqliteStatement table = file_.prepare("SELECT 1 FROM sqlite_master WHERE name = 'weather'");
+  if (!table.row()) return {};  // an older database
+  SqliteStatement s = file_.prepare(
+      "SELECT name, (SELECT min(start_us) FROM weather WHERE covariate = id),"
+      " (SELECT max(start_us) FROM weather WHERE covariate = id) FROM covariate ORDER BY id");
+  std::vector<WeatherSpan> out;
+  while (s.row())
+    if (!s.null(1) && covariate_unit(s.text(0)) != nullptr)
+      out.push_back({s.text(0), s.integer(1), s.integer(2)});
+  return out;
+}
+
+std::vector<WeatherHour> SummaryQuery::weather(std::int64_t from_us, std::int64_t to_us) {
+  std::vector<WeatherHour> out;
+  for (const WeatherSpan& span : weather_spans()) {
+    SqliteStatement s = file_.prepare(
+        "SELECT start_us, readings, mean, min, max FROM weather WHERE covariate ="
+        " (SELECT id FROM covariate WHERE name = ?) AND start_us >= ? AND start_us < ?"
+        " ORDER BY start_us");
+    s.bind(1, span.name).bind(2, from_us).bind(3, to_us);
+    while (s.row())
+      out.push_back({span.name, s.integer(0), s.integer(1), s.number(2), s.number(3), s.number(4)});
+  }
+  return out;
+}
+
 std::vector<ChannelTotals> SummaryQuery::channels(std::int64_t from_us, std::int64_t to_us) {
   SqliteStatement s = file_.prepare(
       "SELECT name, sum(received), sum(lost), sum(late), sum(rejected), sum(stuck), sum(clipped)"
@@ -128,28 +191,16 @@ std::vector<ChannelTotals> SummaryQuery::channels(std::int64_t from_us, std::int
 std::vector<event_t> SummaryQuery::events(std::int64_t from_us, std::int64_t to_us,
                                           std::int64_t most) {
   SqliteStatement s = file_.prepare(
-      "SELECT kind, id, time_us, state, since_us, severity, place, value, std_error, unit, message,"
-      " segment FROM event WHERE time_us >= ? AND time_us < ? ORDER BY time_us DESC LIMIT ?");
+      fmt::format("{} WHERE time_us >= ? AND time_us < ? ORDER BY time_us DESC LIMIT ?", kEvent));
   s.bind(1, from_us).bind(2, to_us).bind(3, most);
-  std::vector<event_t> out;
-  while (s.row()) {
-    event_t e{};
-    e.kind = s.text(0);
-    e.id = s.integer(1);
-    e.time_us = s.integer(2);
-    e.state = static_cast<std::int32_t>(s.integer(3));
-    e.since_us = s.integer(4);
-    e.severity = static_cast<std::int32_t>(s.integer(5));
-    e.place = s.text(6);
-    e.value = s.number(7);
-    e.std_error = s.number(8);
-    e.unit = s.text(9);
-    e.message = s.text(10);
-    e.segment = s.text(11);
-    out.push_back(std::move(e));
-  }
-  std::reverse(out.begin(), out.end());
-  return out;
+  return events_in_order(s);
+}
+
+std::vector<event_t> SummaryQuery::events_of(const std::string& kind, std::int64_t most) {
+  SqliteStatement s = file_.prepare(
+      fmt::format("{} WHERE kind = ? AND state = 1 ORDER BY time_us DESC LIMIT ?", kEvent));
+  s.bind(1, kind).bind(2, most);
+  return events_in_order(s);
 }
 
 std::vector<StoredAcknowledgement> SummaryQuery::acknowledgements(std::int64_t from_us,

@@ -40,6 +40,19 @@ struct ChannelTotals {
   std::int64_t received = 0, lost = 0, late = 0, rejected = 0, stuck = 0, clipped = 0;
 };
 
+/// One hour of a covariate of [[weather]], in the unit at the end of its name.
+struct WeatherHour {
+  std::string name;
+  std::int64_t start_us = 0, readings = 0;
+  double mean = 0, min = 0, max = 0;
+};
+
+/// A covariate and the first and last hour with a reading.
+struct WeatherSpan {
+  std::string name;
+  std::int64_t first_us = 0, last_us = 0;
+};
+
 /// Reads the database of a history, even while another program writes it.
 class SummaryQuery {
  public:
@@ -56,11 +69,20 @@ class SummaryQuery {
                                std::int64_t to_us);
   /// Returns the newest period in which the parameter was observable.
   std::optional<SummaryRow> newest_row(std::int64_t parameter, std::int64_t period_s);
+  /// Returns the start of the first period of this length from a time on; nullopt without any.
+  std::optional<std::int64_t> first_us(std::int64_t period_s, std::int64_t from_us);
+  /// Returns the covariates with a known unit. Empty in a database of an older version.
+  std::vector<WeatherSpan> weather_spans();
+  /// Returns the hours of weather that start in [from_us, to_us), by covariate and in order of
+  /// time. Empty in a database of an older version.
+  std::vector<WeatherHour> weather(std::int64_t from_us, std::int64_t to_us);
   /// Returns the counts of the shortest periods that start in [from_us, to_us).
   std::vector<ChannelTotals> channels(std::int64_t from_us, std::int64_t to_us);
   /// Returns the newest `most` events of [from_us, to_us), in order of time.
   std::vector<event_t> events(std::int64_t from_us, std::int64_t to_us, std::int64_t most);
 
+  /// Returns the newest `most` raised events of a kind, in order of time.
+  std::vector<event_t> events_of(const std::string& kind, std::int64_t most);
   /// Returns the acknowledgements of [from_us, to_us), in order of time.
   std::vector<StoredAcknowledgement> acknowledgements(std::int64_t from_us, std::int64_t to_us);
 

@@ -97,6 +97,7 @@ std::string SummaryStore::add(const SummaryBatch& batch) {
       if (!add_event(event)) return false;
     for (const acknowledged_t& acknowledged : batch.acknowledged)
       if (!add_acknowledged(acknowledged)) return false;
+    if (!add_weather(batch.weather)) return false;
     return batch.periods.empty() || forget_values(batch.periods.back().start_us);
   });
   if (done) return {};
@@ -288,6 +289,25 @@ bool SummaryStore::add_acknowledged(const acknowledged_t& a) {
     put.bind(1, a.kind[i]).bind(2, a.id[i]).bind(3, a.since_us[i]);
     put.bind(4, a.place[i]).bind(5, a.who[i]).bind(6, a.comment[i]);
     if (!put.run()) return false;
+  }
+  return true;
+}
+
+/// Adds readings to the means of their hours. Ignores readings that are not newer than the newest
+/// of their hour: they were stored before.
+bool SummaryStore::add_weather(const std::vector<WeatherReading>& readings) {
+  if (readings.empty()) return true;
+  SqliteStatement name = file_.prepare("INSERT OR IGNORE INTO covariate (name) VALUES (?)");
+  SqliteStatement put = file_.prepare(
+      "INSERT INTO weather (covariate, start_us, readings, mean, min, max, last_us)"
+      " SELECT id, ?1, 1, ?2, ?2, ?2, ?3 FROM covariate WHERE name = ?4"
+      " ON CONFLICT DO UPDATE SET mean = mean + (excluded.mean - mean) / (readings + 1),"
+      " readings = readings + 1, min = min(min, excluded.min), max = max(max, excluded.max),"
+      " last_us = excluded.last_us WHERE excluded.last_us > last_us");
+  for (const WeatherReading& r : readings) {
+    name.bind(1, r.name);
+    put.bind(1, start_of(r.time_us, kHour_s)).bind(2, r.value).bind(3, r.time_us).bind(4, r.name);
+    if (!name.run() || !put.run()) return false;
   }
   return true;
 }

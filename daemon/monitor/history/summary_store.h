@@ -60,6 +60,7 @@ class SummaryStore {
   bool add_channels(const PeriodData& data);
   bool forget_values(std::int64_t newest_us);
   bool add_event(const event_t& event);
+  bool add_weather(const std::vector<WeatherReading>& readings);
   bool add_acknowledged(const acknowledged_t& acknowledged);
 
   HistorySettings settings_;

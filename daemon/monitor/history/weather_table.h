@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/monitor/history/summary_query.h"
 #include "estimator/years/weather_lags.h"
 
 namespace framewatch::daemon {
@@ -21,9 +22,19 @@ struct WeatherTable {
 };
 
 /// Reads a table (CSV, plain or .gz): the column "time" (UTC, or seconds since 1970), then
-/// covariates with their unit at the end of the name: _degc, _pct or _mps. Empty cells and "nan"
+/// covariates with their unit at the end of the name (covariate_unit()). Empty cells and "nan"
 /// are no values. Returns nullopt, with every problem, when the file breaks a rule.
 std::optional<WeatherTable> read_weather(const std::string& path,
                                          std::vector<std::string>& problems);
+
+/// Returns the covariates of these names. Their units must be known.
+std::vector<estimator::Covariate> covariates_of(const std::vector<std::string>& names);
+
+/// Returns the daily means of these covariates in a history, over the hours with readings.
+WeatherTable weather_of(const std::vector<WeatherHour>& hours,
+                        const std::vector<std::string>& covariates);
+
+/// Returns the hours as a table that read_weather() reads.
+std::string weather_csv(const std::vector<WeatherHour>& hours);
 
 }  // namespace framewatch::daemon

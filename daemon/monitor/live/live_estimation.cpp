@@ -94,8 +94,9 @@ void LiveEstimation::on_sample(const estimator::AccelSample& sample) {
   if (history_ != nullptr) history_->sample(sample);
 }
 
-void LiveEstimation::on_temperature(const temperature_t& temperature) {
-  if (history_ != nullptr) history_->temperature(temperature);
+void LiveEstimation::on_weather(const std::string& channel, std::int64_t time_us,
+                                const std::vector<std::uint8_t>& bytes) {
+  if (history_ != nullptr && !feeding_) history_->weather(channel, time_us, bytes);
 }
 
 void LiveEstimation::on_event(const event_t& event) {

@@ -130,7 +130,8 @@ class LiveEstimation : public EstimationListener {
   void on_message(const drivers::LcmMessage& message);
   void on_frame(int bus, const drivers::CanFrame& frame);
   void on_sample(const estimator::AccelSample& sample) override;
-  void on_temperature(const temperature_t& temperature) override;
+  void on_weather(const std::string& channel, std::int64_t time_us,
+                  const std::vector<std::uint8_t>& bytes) override;
   void on_gap(const estimator::GapNews& news) override;
   void on_event(const event_t& event) override;
   void on_shaken(const EventReport& report) override { reports_.write(report, *config_); }

@@ -39,6 +39,10 @@ std::vector<std::string> heard_channels(const Config& config) {
   std::vector<std::string> channels = sample_channels(config);
   if (config.watch && !config.watch->temperature_channel.empty())
     channels.push_back(config.watch->temperature_channel);
+  for (const WeatherSettings& w : config.weather)
+    for (const std::string& channel : {w.lcm_channel, w.thermometer})
+      if (!channel.empty() && std::ranges::find(channels, channel) == channels.end())
+        channels.push_back(channel);
   return channels;
 }
 

@@ -37,7 +37,7 @@ class LiveIntake {
 
 /// Returns the LCM channels of samples and of their channel tables.
 std::vector<std::string> sample_channels(const Config& config);
-/// Returns the LCM channels that an estimation needs: the sample_channels() and the thermometer's.
+/// Returns the LCM channels that an estimation needs: the sample_channels() and those of weather.
 std::vector<std::string> heard_channels(const Config& config);
 
 /// Returns why no sample can be received: no channel has a source, and nodes do not name channels

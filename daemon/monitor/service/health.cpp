@@ -179,8 +179,9 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
 std::vector<std::string> Heard::channels() const {
   return LatestMessages::channels(
       {DaemonMessage::service, DaemonMessage::status, DaemonMessage::estimate, DaemonMessage::gap,
-       DaemonMessage::watch, DaemonMessage::can, DaemonMessage::history, DaemonMessage::actions,
-       DaemonMessage::acknowledged, DaemonMessage::reception, DaemonMessage::uplink});
+       DaemonMessage::watch, DaemonMessage::weather, DaemonMessage::can, DaemonMessage::history,
+       DaemonMessage::actions, DaemonMessage::acknowledged, DaemonMessage::reception,
+       DaemonMessage::uplink});
 }
 
 void Heard::message(const std::string& channel, const void* data, std::size_t size) {

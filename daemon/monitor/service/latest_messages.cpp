@@ -37,6 +37,7 @@ const MessageChannel kMessageChannels[] = {
     entry_of<gap_t, &LatestMessages::gap>("GAP"),
     entry_of<model_fit_t, &LatestMessages::model_fit>("MODEL_FIT"),
     entry_of<watch_t, &LatestMessages::watch>("WATCH"),
+    entry_of<weather_status_t, &LatestMessages::weather>("WEATHER"),
     entry_of<can_status_t, &LatestMessages::can>("CAN"),
     entry_of<history_status_t, &LatestMessages::history>("HISTORY"),
     entry_of<action_status_t, &LatestMessages::actions>("ACTIONS"),

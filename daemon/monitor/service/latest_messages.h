@@ -23,6 +23,7 @@
 #include <framewatch/status_t.hpp>
 #include <framewatch/uplink_status_t.hpp>
 #include <framewatch/watch_t.hpp>
+#include <framewatch/weather_status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 namespace framewatch::daemon {
@@ -36,6 +37,7 @@ enum class DaemonMessage {
   gap,
   model_fit,
   watch,
+  weather,
   can,
   history,
   actions,
@@ -72,6 +74,7 @@ class LatestMessages {
   std::optional<gap_t> gap;
   std::optional<model_fit_t> model_fit;
   std::optional<watch_t> watch;
+  std::optional<weather_status_t> weather;
   std::optional<can_status_t> can;
   std::optional<history_status_t> history;
   std::optional<action_status_t> actions;

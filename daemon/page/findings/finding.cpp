@@ -113,6 +113,23 @@ Finding finding_of(const event_t& e, const Config& config) {
     f.change_ratio = e.value / 100;
     f.std_error = e.std_error / 100;
     describe_change(f, config);
+  } else if (e.kind == "lasting_loss") {
+    f.kind = FindingKind::change;
+    f.change_ratio = e.value / 100;
+    f.std_error = e.std_error / 100;
+    f.text += ".";
+    f.advice =
+        e.place == kWholeBuilding
+            ? "Check mass, use, and the scale and clock of the sensors. If none explains the "
+              "loss, have a structural engineer inspect the building."
+            : fmt::format(
+                  "Have a structural engineer inspect {}; then acknowledge the "
+                  "finding. docs/years.md says how it was found.",
+                  place_name(e.place, config));
+  } else if (e.kind == "weather") {
+    f.kind = FindingKind::belief;
+    f.text += ".";
+    f.advice = fmt::format("Check the sensor and gateway of {}.", e.place);
   } else if (e.kind == "strong_motion") {
     describe_strong_motion(f);
   } else if (e.kind == "gap") {

@@ -28,6 +28,11 @@
 namespace framewatch::daemon {
 namespace {
 
+nlohmann::json weather_json(const weather_status_t& w) {
+  return {{"name", w.name},       {"value", w.value},       {"value_us", w.value_us},
+          {"time_us", w.time_us}, {"accepted", w.accepted}, {"rejected", w.rejected}};
+}
+
 /// Returns the output of `framewatch status --json`. odd: the problems found. Requires
 /// heard.service. now_us: host clock.
 std::string status_json(const Heard& h, const Config& config, const std::vector<std::string>& odd,
@@ -75,6 +80,7 @@ std::string status_json(const Heard& h, const Config& config, const std::vector<
                     {"per_log_amplitude_std_error", w.per_log_amplitude_std_error},
                     {"temperature_degc", w.temperature_degc}};
   }
+  if (h.weather) out["weather"] = weather_json(*h.weather);
   if (h.uplink)
     out["hub"] = {{"building", h.uplink->building},
                   {"connected", h.uplink->connected != 0},
@@ -208,6 +214,21 @@ void print_watch(const Heard& h) {
   line("watch", text);
 }
 
+/// Prints the newest value of every covariate and its age.
+void print_weather(const Heard& h) {
+  if (!h.weather) return;
+  const weather_status_t& w = *h.weather;
+  for (std::size_t c = 0; c < w.name.size(); ++c) {
+    const double age_min = 1e-6 * static_cast<double>(w.time_us - w.value_us[c]) / 60;
+    std::string text = w.value_us[c] == 0 ? "no reading yet"
+                       : age_min < 120
+                           ? fmt::format("{:.5g}, {:.0f} min old", w.value[c], age_min)
+                           : fmt::format("{:.5g}, {:.1f} h old", w.value[c], age_min / 60);
+    if (w.rejected[c] > 0) text += fmt::format("; {} readings rejected", w.rejected[c]);
+    line("weather", fmt::format("{}: {}", w.name[c], text));
+  }
+}
+
 void print_history(const Heard& h) {
   if (!h.history) return;
   std::string text = fmt::format("{:.1f} GB in {}, {} samples lost to the disk",
@@ -293,6 +314,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   print_reception(h);
   print_estimates(h);
   print_watch(h);
+  print_weather(h);
   print_can(h);
   print_history(h);
   print_actions(h);

@@ -200,6 +200,22 @@ void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_
         .value(w.temperature_degc);
 }
 
+void add_weather(MetricFamilies& out, const weather_status_t& w) {
+  std::vector<double> age_s;
+  for (const std::int64_t us : w.value_us)
+    age_s.push_back(us == 0 ? std::nan("") : 1e-6 * static_cast<double>(w.time_us - us));
+  const auto each = [&](const std::vector<double>& values) {
+    for (std::size_t c = 0; c < w.name.size(); ++c)
+      if (std::isfinite(values[c])) out.value(values[c], {{"covariate", w.name[c]}});
+  };
+  out.gauge("weather", "Newest reading of a covariate, in the unit at the end of its name.");
+  each(w.value);
+  out.gauge("weather_age_seconds", "Time since that reading, of the sensors' clock.");
+  each(age_s);
+  out.counter("weather_rejected", "Readings that did not count.")
+      .each("covariate", w.name, w.rejected);
+}
+
 void add_gap(MetricFamilies& out, const gap_t& g) {
   out.gauge("gap_ratio", "Gap between simulation and measurement, NRMSE over the last window.")
       .value(g.overall_nrmse);

@@ -22,6 +22,7 @@
 #include <framewatch/status_t.hpp>
 #include <framewatch/uplink_status_t.hpp>
 #include <framewatch/watch_t.hpp>
+#include <framewatch/weather_status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/monitor/event_report/event_report_files.h"
@@ -72,6 +73,7 @@ void add_status(MetricFamilies& out, const status_t& status);
 void add_estimate(MetricFamilies& out, const parameter_table_t& table,
                   const window_estimate_t& estimate);
 void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_t& watch);
+void add_weather(MetricFamilies& out, const weather_status_t& weather);
 void add_gap(MetricFamilies& out, const gap_t& gap);
 void add_can(MetricFamilies& out, const can_status_t& can);
 void add_history(MetricFamilies& out, const history_status_t& history);

@@ -60,6 +60,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   if (fresh.status) add_status(out, *fresh.status);
   if (fresh.parameters && fresh.estimate) add_estimate(out, *fresh.parameters, *fresh.estimate);
   if (fresh.parameters && fresh.watch) add_watch(out, *fresh.parameters, *fresh.watch);
+  if (fresh.weather) add_weather(out, *fresh.weather);
   if (fresh.gap) add_gap(out, *fresh.gap);
   if (fresh.can) add_can(out, *fresh.can);
   if (fresh.history) add_history(out, *fresh.history);

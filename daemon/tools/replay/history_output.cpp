@@ -8,7 +8,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMaxNews = 10000;  // events in memory before they are stored
+constexpr std::size_t kMaxNews = 10000;  // events or readings in memory before they are stored
 
 }  // namespace
 
@@ -41,7 +41,8 @@ bool HistoryOutput::put(std::int64_t, const std::string& channel,
   // Store one longest period at a time, so that each is summed up once.
   const SummaryBatch& waits = intake_.batch();
   const auto most = static_cast<std::size_t>(longest_s() / settings_.summary_s.front());
-  const bool full = waits.periods.size() > most || waits.events.size() > kMaxNews;
+  const bool full = waits.periods.size() > most || waits.events.size() > kMaxNews ||
+                    waits.weather.size() > kMaxNews;
   return full ? store() : error_.empty();
 }
 
@@ -53,10 +54,12 @@ bool HistoryOutput::store() {
   };
   std::erase_if(batch.periods, [&](const PeriodData& p) { return left_out(p.start_us); });
   std::erase_if(batch.events, [&](const event_t& e) { return left_out(e.time_us); });
+  std::erase_if(batch.weather, [&](const WeatherReading& w) { return left_out(w.time_us); });
   const std::string problem = batch.empty() ? "" : store_.add(batch);
   batch.periods.clear();
   batch.events.clear();
   batch.acknowledged.clear();
+  batch.weather.clear();
   return problem.empty() || fail(problem);
 }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/can/can_log.h"
+#include "drivers/can/can_source.h"
 #include "tests/drivers/can/intake_run.h"
 #include "tests/support/can_traffic.h"
 #include "tests/support/data.h"
@@ -44,6 +45,46 @@ INSTANTIATE_TEST_SUITE_P(Maps, Example,
                          testing::Values("raw_int16", "xsens_mti600", "sbg_ellipse", "bosch_mm510",
                                          "j1939_61485", "epson_m_a552", "fd_block", "tower"),
                          [](const auto& param) { return std::string(param.param); });
+
+TEST(CanIntake, PassesOnValuesThatStandByThemselves) {
+  CanMap map;
+  map.buses.emplace_back();
+  CanField field;
+  field.start = 0;
+  field.bits = 16;
+  field.factor = 0.01;
+  CanMessageMap message;
+  message.id = 512;
+  message.mask = 0x7FF;
+  message.length = 2;
+  map.values.push_back({0, message, field, 7});
+  EXPECT_FALSE(map.empty());
+  const std::vector<CanFilter> filters = filters_of(map, 0);
+  ASSERT_EQ(filters.size(), 1u);
+  EXPECT_EQ(filters[0].id, 512u);
+  CanIntake intake(map, [](const estimator::AccelSample&) { FAIL(); });
+  std::vector<double> heard;
+  intake.on_value([&](std::size_t covariate, double value, std::int64_t stamp_us) {
+    EXPECT_EQ(covariate, 7u);
+    EXPECT_EQ(stamp_us, kStart_us);
+    heard.push_back(value);
+  });
+  CanFrame frame;
+  frame.stamp_us = kStart_us;
+  frame.id = 512;
+  frame.length = 2;
+  frame.data[0] = 0xE8;
+  frame.data[1] = 0x03;
+  intake.frame(0, frame);
+  frame.length = 3;  // another message than the DBC file's
+  intake.frame(0, frame);
+  frame.length = 2;
+  frame.id = 513;
+  intake.frame(0, frame);
+  ASSERT_EQ(heard.size(), 1u);
+  EXPECT_NEAR(heard[0], 10, 1e-12);
+  EXPECT_EQ(intake.buses()[0].foreign, 1);
+}
 
 TEST(CanIntake, CountsLostFramesWithoutShiftingOthers) {
   for (const char* name : {"tower", "raw_int16"}) {

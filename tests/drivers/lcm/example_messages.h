@@ -16,6 +16,8 @@
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/temperature_t.hpp>
 #include <framewatch/watch_t.hpp>
+#include <framewatch/weather_status_t.hpp>
+#include <framewatch/weather_t.hpp>
 
 #include "tests/drivers/lcm/example_estimates.h"
 #include "tests/drivers/lcm/example_fleet.h"
@@ -224,6 +226,28 @@ inline temperature_t temperature() {
   return m;
 }
 
+inline weather_t weather() {
+  weather_t m{};
+  m.time_us = 110;
+  m.name = "humidity_pct";
+  m.value = 81.5;
+  return m;
+}
+
+inline weather_status_t weather_status() {
+  weather_status_t m{};
+  m.time_us = 120;
+  m.covariates = 2;
+  m.name = {"outside_degc", "humidity_pct"};
+  m.value = {-12.5, 81.5};
+  m.value_us = {110, 100};
+  m.mean = {-12.25, std::numeric_limits<double>::quiet_NaN()};
+  m.mean_us = {110, 0};
+  m.accepted = {7, 8};
+  m.rejected = {1, 0};
+  return m;
+}
+
 inline action_status_t action_status() {
   action_status_t m{};
   m.time_us = 110;
@@ -291,6 +315,8 @@ void for_each(Visit visit) {
   visit("COUNTS", accel_counts());
   visit("FRAMEWATCH_HISTORY", history_status());
   visit("TEMPERATURE", temperature());
+  visit("WEATHER", weather());
+  visit("FRAMEWATCH_WEATHER", weather_status());
   visit("FRAMEWATCH_ACTIONS", action_status());
   visit("FRAMEWATCH_ACKNOWLEDGE", acknowledge());
   visit("FRAMEWATCH_ACKNOWLEDGED", acknowledged());

@@ -16,6 +16,7 @@
 #include "daemon/config/keys/section.h"
 #include "daemon/config/keys/section_table.h"
 #include "daemon/config/keys/watch_options.h"
+#include "daemon/config/keys/weather_options.h"
 #include "drivers/can/can_map.h"
 #include "estimator/setup/pipeline_config.h"
 #include "estimator/structure/sensors.h"
@@ -96,6 +97,8 @@ TEST(KeyTargets, EveryKeyReachesItsFieldAndNoOther) {
   round_trip<drivers::CanBusMap>("can", keys);
   round_trip<drivers::CanNodeMap>("can_node", keys);
   round_trip<CanNodeSettings>("can_node", keys);
+  round_trip<WeatherSettings>("weather", keys);
+  round_trip<WeatherSettings>("weather.source", keys);
   round_trip<WatchSettings>("watch", keys);
   round_trip<GapSettings>("gap", keys);
   round_trip<HistorySettings>("history", keys);

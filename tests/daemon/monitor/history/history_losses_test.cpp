@@ -173,7 +173,7 @@ TEST_F(HistoryLossesTest, RefusesAMalformedTableWithEveryProblem) {
   const Ran unit = run_with_weather("time,outside,inside_degc\n");
   EXPECT_EQ(unit.code, 2);
   EXPECT_EQ(unit.problems, weather_path_ + ":1: \"outside\": the name must end with its unit: " +
-                               "_degc, _pct or _mps\n");
+                               "_degc, _pct, _mps or _wpm2\n");
   const Ran rows = run_with_weather(
       "time,outside_degc\nyesterday,3\n2025-01-01T00:00Z,285.2\n2025-01-01T00:00Z\n"
       "2025-01-01T00:00Z,warm\n");

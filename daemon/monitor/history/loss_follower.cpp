@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "daemon/monitor/history/loss_follower.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/base/clocks.h"
+#include "daemon/monitor/events/change_words.h"
+#include "daemon/monitor/history/history_days.h"
+#include "daemon/monitor/history/history_files.h"
+#include "estimator/numeric/nan.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr std::int64_t kStart_d = 30, kYear_d = 365;
+constexpr int kMostSkipped = 100;
+constexpr std::int64_t kChunk_d = 180;  // days in memory at once
+
+/// Returns the start of the first summary. Skips summaries a year or more before the others: a
+/// clock was not set.
+std::optional<std::int64_t> first_summary(SummaryQuery& summaries, std::int64_t period_s) {
+  auto first = summaries.first_us(period_s, -kEver_us);
+  for (int skipped = 0; first && skipped < kMostSkipped; ++skipped) {
+    const auto next = summaries.first_us(period_s, *first + kDay_us);
+    if (!next || *next - *first < kYear_d * kDay_us) break;
+    first = next;
+  }
+  return first;
+}
+
+std::vector<std::string> names_of(const std::vector<WeatherSpan>& spans) {
+  std::vector<std::string> out;
+  for (const WeatherSpan& s : spans) out.push_back(s.name);
+  return out;
+}
+
+}  // namespace
+
+std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& spans,
+                                            std::int64_t first_day, std::int64_t to_day) {
+  const std::int64_t late_d = std::max(kStart_d, (to_day - first_day) / 4);
+  std::vector<WeatherSpan> out = spans;
+  std::erase_if(out, [&](const WeatherSpan& s) {
+    return s.first_us >= (first_day + late_d) * kDay_us || s.last_us < (to_day - kYear_d) * kDay_us;
+  });
+  return out;
+}
+
+LossFollower::LossFollower(const estimator::LifeBudget& budget, double window_s,
+                           std::int64_t period_s)
+    : budget_(budget), window_s_(window_s), period_s_(period_s) {}
+
+/// Looks up what there is to watch. Begins with the first day if that has changed. Returns false if
+/// there is nothing to watch.
+bool LossFollower::begin(SummaryQuery& summaries, std::int64_t to_day) {
+  const auto first_us = first_summary(summaries, period_s_);
+  if (!first_us) return false;
+  const std::int64_t first_day = floor_day(*first_us);
+  std::vector<SummaryParameter> elements = summaries.parameters();
+  std::erase_if(elements, [&](const SummaryParameter& p) {
+    return !is_frame_stiffness(p.name) || !summaries.newest_row(p.id, period_s_);
+  });
+  std::vector<std::string> covariates =
+      names_of(lasting_covariates(summaries.weather_spans(), first_day, to_day));
+  const bool same =
+      watch_ && covariates == covariates_ &&
+      std::ranges::equal(elements, elements_, {}, &SummaryParameter::id, &SummaryParameter::id);
+  // A clock that was ahead may have led beyond the present day.
+  if (!same || to_day + 1 < next_day_) {
+    watch_.reset();
+    elements_ = std::move(elements);
+    covariates_ = std::move(covariates);
+    next_day_ = first_day;
+  }
+  if (elements_.empty()) return false;
+  if (!watch_) watch_.emplace(elements_.size(), covariates_of(covariates_), budget_);
+  return true;
+}
+
+void LossFollower::take(SummaryQuery& summaries, std::int64_t from_day, std::int64_t to_day,
+                        std::vector<Loss>& found) {
+  const std::int64_t from_us = from_day * kDay_us, to_us = to_day * kDay_us;
+  std::vector<ElementDays> elements;
+  for (const SummaryParameter& p : elements_)
+    elements.push_back(element_days(p, summaries, period_s_, window_s_, from_us, to_us));
+  const WeatherTable weather = weather_of(summaries.weather(from_us, to_us), covariates_);
+  for (std::int64_t day = from_day; day < to_day; ++day) {
+    std::vector<estimator::DayValue> values;
+    for (const ElementDays& e : elements) values.push_back(e.value(day));
+    const auto loss = watch_->push(static_cast<double>(day), values, weather.of(day));
+    if (loss)
+      found.push_back({loss->element == estimator::YearsWatch::kAllAlike
+                           ? kWholeBuilding
+                           : elements_[static_cast<std::size_t>(loss->element)].name,
+                       *loss});
+  }
+}
+
+std::optional<std::vector<LossFollower::Loss>> LossFollower::advance(
+    SummaryQuery& summaries, std::int64_t to_day, const std::function<bool()>& stop,
+    std::string& problem) {
+  std::vector<Loss> out;
+  if (!begin(summaries, to_day)) {
+    problem = summaries.problem();
+    return problem.empty() ? std::optional(out) : std::nullopt;
+  }
+  while (next_day_ < to_day && summaries.problem().empty() && !stop()) {
+    const std::int64_t until = std::min(next_day_ + kChunk_d, to_day);
+    take(summaries, next_day_, until, out);
+    next_day_ = until;
+  }
+  problem = summaries.problem();
+  if (problem.empty() && next_day_ >= to_day) return out;
+  watch_.reset();
+  return std::nullopt;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/monitor/history/summary_query.h"
+#include "daemon/monitor/history/weather_table.h"
+#include "estimator/years/life_budget.h"
+#include "estimator/years/years_watch.h"
+
+namespace framewatch::daemon {
+
+/// Returns the covariates that years are watched with: those with a reading within the first 30
+/// days or the first quarter of the days from `first_day` to `to_day`, and within the last year. A
+/// covariate that came later would cost all the days before it. `to_day` is excluded.
+std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& spans,
+                                            std::int64_t first_day, std::int64_t to_day);
+
+/// Finds losses in the daily means of a history as it grows, with the result of find_losses() over
+/// all days so far. Begins again from the first day when an element or a covariate joins or leaves.
+class LossFollower {
+ public:
+  /// window_s: length of the windows. period_s: of the summaries that are read.
+  LossFollower(const estimator::LifeBudget& budget, double window_s, std::int64_t period_s);
+
+  struct Loss {
+    std::string element;  ///< or kWholeBuilding
+    estimator::YearsWatch::Finding finding;
+  };
+  /// Takes the days before `to_day` (since 1970, UTC) that it has not taken. Returns the losses
+  /// found in them, or nullopt if the history cannot be read (see `problem`) or `stop` returned
+  /// true; then the next call begins with the first day.
+  std::optional<std::vector<Loss>> advance(SummaryQuery& summaries, std::int64_t to_day,
+                                           const std::function<bool()>& stop, std::string& problem);
+
+  int days() const { return watch_ ? watch_->days() : 0; }
+
+ private:
+  bool begin(SummaryQuery& summaries, std::int64_t to_day);
+  void take(SummaryQuery& summaries, std::int64_t from_day, std::int64_t to_day,
+            std::vector<Loss>& found);
+
+  estimator::LifeBudget budget_;
+  double window_s_;
+  std::int64_t period_s_;
+  std::vector<SummaryParameter> elements_;
+  std::vector<std::string> covariates_;
+  std::optional<estimator::YearsWatch> watch_;
+  std::int64_t next_day_ = 0;
+};
+
+}  // namespace framewatch::daemon
