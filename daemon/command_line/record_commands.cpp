@@ -245,7 +245,7 @@ void add_simulate(CommandList& commands) {
       "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
       "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2\n"
       "  framewatch simulate configs/can/scenario_tower.toml --can vcan0\n"
-      "  framewatch simulate configs/scenario_years.toml --history years --weather weather.csv");
+      "  framewatch simulate configs/scenario_years.toml --history years");
   commands.reads_files(
       command->add_option("SCENARIO", arguments.scenario, "scenario file (TOML)")->required());
   add_file(command, "--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog");

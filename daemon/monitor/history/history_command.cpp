@@ -207,16 +207,18 @@ std::optional<WeatherTable> kept_weather(const HistoryRequest& r, SummaryQuery& 
 /// there is a loss.
 int show_years(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries) {
   std::vector<std::string> problems;
-  const std::vector<ElementDays> elements = read_days(r, summaries);
+  const std::vector<ElementDays> elements = read_days(r, Quantity::stiffness, summaries);
   const auto weather =
       a.weather.empty() ? kept_weather(r, summaries, elements) : read_weather(a.weather, problems);
   if (!weather) return fail(problems);
-  const HistoryLosses losses =
-      find_losses(elements, *weather,
-                  r.config && r.config->watch ? r.config->watch->life : estimator::LifeBudget{});
+  const estimator::LifeBudget budget =
+      r.config && r.config->watch ? r.config->watch->life : estimator::LifeBudget{};
+  const HistoryLosses losses = find_losses(Quantity::stiffness, elements, *weather, budget);
+  const HistoryLosses damping =
+      find_losses(Quantity::damping, read_days(r, Quantity::damping, summaries), *weather, budget);
   std::string page;
   if (!a.report.empty() && !elements.empty())
-    page = history_page(summaries.structure(), elements, losses, *weather,
+    page = history_page(summaries.structure(), elements, losses, damping, *weather,
                         summaries.events(r.from_us, r.to_us, kMaxEvents),
                         summaries.acknowledgements(r.from_us, r.to_us));
   if (const std::string why = summaries.problem(); !why.empty())
@@ -224,7 +226,9 @@ int show_years(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery&
   if (!page.empty())
     if (const std::string why = drivers::write_text_file(a.report, page); !why.empty())
       return fail({why});
-  fmt::print("{}", a.json ? losses_json(losses) : printable_lines(losses_text(losses)));
+  std::string text = losses_text(losses);
+  for (const std::string& sentence : damping_sentences(damping, losses)) text += sentence + "\n";
+  fmt::print("{}", a.json ? losses_json(losses, damping) : printable_lines(text));
   return losses.found.empty() ? 0 : kFailed;
 }
 

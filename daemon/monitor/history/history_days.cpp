@@ -11,6 +11,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/numbers.h"
 #include "daemon/base/utc_time.h"
+#include "estimator/years/damping_days.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -59,8 +60,19 @@ std::int64_t floor_day(std::int64_t time_us) {
   return time_us / kDay_us - (time_us % kDay_us < 0 ? 1 : 0);
 }
 
-bool is_frame_stiffness(const std::string& parameter) {
-  return parameter.starts_with("kx_") || parameter.starts_with("ky_");
+bool is_of_frame(Quantity quantity, const std::string& parameter) {
+  const bool damping = quantity == Quantity::damping;
+  return parameter.starts_with(damping ? "cx_" : "kx_") ||
+         parameter.starts_with(damping ? "cy_" : "ky_");
+}
+
+estimator::DayValue watched(Quantity quantity, const estimator::DayValue& value) {
+  return quantity == Quantity::damping ? estimator::as_stiffness(value) : value;
+}
+
+estimator::YearsWatch::Finding in_quantity(Quantity quantity,
+                                           const estimator::YearsWatch::Finding& finding) {
+  return quantity == Quantity::damping ? estimator::as_damping(finding) : finding;
 }
 
 ElementDays element_days(const SummaryParameter& parameter, SummaryQuery& summaries,
@@ -88,12 +100,13 @@ ElementDays element_days(const SummaryParameter& parameter, SummaryQuery& summar
   return out;
 }
 
-std::vector<ElementDays> read_days(const HistoryRequest& r, SummaryQuery& summaries) {
+std::vector<ElementDays> read_days(const HistoryRequest& r, Quantity quantity,
+                                   SummaryQuery& summaries) {
   const std::int64_t period_s = period_of(summaries);
   const double window_s = r.config ? r.config->pipeline.options.window_s : kWindow_s;
   std::vector<ElementDays> out;
   for (const SummaryParameter& p : r.parameters) {
-    if (!is_frame_stiffness(p.name)) continue;
+    if (!is_of_frame(quantity, p.name)) continue;
     ElementDays days = element_days(p, summaries, period_s, window_s, r.from_us, r.to_us);
     if (!days.days.empty()) out.push_back(std::move(days));
   }

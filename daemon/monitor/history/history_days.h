@@ -32,8 +32,17 @@ struct ElementDays {
 
 /// Returns the day since 1970, UTC.
 std::int64_t floor_day(std::int64_t time_us);
-/// Returns true for the stiffness of a frame.
-bool is_frame_stiffness(const std::string& parameter);
+/// What is watched for years: frames' stiffness (kx_, ky_) for losses, their damping (cx_, cy_) for
+/// growth.
+enum class Quantity { stiffness, damping };
+
+/// Returns true for this quantity of a frame.
+bool is_of_frame(Quantity quantity, const std::string& parameter);
+/// Returns a day's value as a YearsWatch of this quantity takes it.
+estimator::DayValue watched(Quantity quantity, const estimator::DayValue& value);
+/// Returns what a finding of that watch says of the quantity.
+estimator::YearsWatch::Finding in_quantity(Quantity quantity,
+                                           const estimator::YearsWatch::Finding& finding);
 
 /// Reads the days of a parameter from summaries of this length that start in [from_us, to_us).
 /// window_s: length of the windows.
@@ -41,8 +50,10 @@ ElementDays element_days(const SummaryParameter& parameter, SummaryQuery& summar
                          std::int64_t period_s, double window_s, std::int64_t from_us,
                          std::int64_t to_us);
 
-/// Reads the frame stiffnesses of a request day by day. Elements without any value are left out.
-std::vector<ElementDays> read_days(const HistoryRequest& request, SummaryQuery& summaries);
+/// Reads a quantity of the frames of a request day by day. Elements without any value are left
+/// out.
+std::vector<ElementDays> read_days(const HistoryRequest& request, Quantity quantity,
+                                   SummaryQuery& summaries);
 
 /// Returns "2026-11-28" for a day since 1970.
 std::string day_text(std::int64_t day);

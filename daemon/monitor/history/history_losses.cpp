@@ -11,12 +11,14 @@
 #include "daemon/base/numbers.h"
 #include "daemon/base/utc_time.h"
 #include "estimator/numeric/nan.h"
+#include "estimator/years/damping_days.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr double kLikely = 0.3;  // evidence from which a loss is shown before it is proven
 constexpr const char* kAll = "all alike";
+constexpr double kSameTime_d = 30;  // between a loss of stiffness and a growth of damping
 
 std::string change_text(double ratio, double std_error) {
   return fmt::format("{} %", change_with_error(ratio, std_error));
@@ -31,9 +33,10 @@ std::string element_name(const HistoryLosses& l, int element) {
 
 }  // namespace
 
-HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather,
-                          const estimator::LifeBudget& budget) {
+HistoryLosses find_losses(Quantity quantity, const std::vector<ElementDays>& elements,
+                          const WeatherTable& weather, const estimator::LifeBudget& budget) {
   HistoryLosses out;
+  out.quantity = quantity;
   out.budget = budget;
   for (const estimator::Covariate& c : weather.covariates) out.covariates.push_back(c.name);
   if (elements.empty()) return out;
@@ -47,9 +50,9 @@ HistoryLosses find_losses(const std::vector<ElementDays>& elements, const Weathe
   estimator::YearsWatch watch(elements.size(), weather.covariates, budget);
   for (std::int64_t day = out.from_day; day <= out.to_day; ++day) {
     std::vector<estimator::DayValue> values;
-    for (const ElementDays& e : elements) values.push_back(e.value(day));
+    for (const ElementDays& e : elements) values.push_back(watched(quantity, e.value(day)));
     if (const auto loss = watch.push(static_cast<double>(day), values, weather.of(day)))
-      out.found.push_back(*loss);
+      out.found.push_back(in_quantity(quantity, *loss));
   }
   out.days = watch.days();
   for (std::size_t p = 0; p < elements.size(); ++p) {
@@ -118,19 +121,47 @@ std::string losses_text(const HistoryLosses& l) {
   return out;
 }
 
-std::string losses_json(const HistoryLosses& l) {
+std::vector<std::string> damping_sentences(const HistoryLosses& damping,
+                                           const HistoryLosses& stiffness) {
+  if (damping.elements.empty()) return {};
+  const double least = std::pow(1 - damping.budget.least_loss, -estimator::kDampingPower) - 1;
+  std::vector<std::string> out{
+      fmt::format("damping: {} of at least {:.0f} % that weather does not explain",
+                  damping.found.empty()       ? "no growth"
+                  : damping.found.size() == 1 ? "1 growth"
+                                              : fmt::format("{} growths", damping.found.size()),
+                  100 * least)};
+  for (const auto& f : damping.found) {
+    const std::string name = element_name(damping, f.element);
+    const bool second = std::ranges::any_of(stiffness.found, [&](const auto& loss) {
+      return std::abs(loss.since_day - f.since_day) <= kSameTime_d &&
+             element_name(stiffness, loss.element).substr(1) == name.substr(1);
+    });
+    out.push_back(fmt::format(
+        "{} {}, since {}, found {}: {}", name, change_text(f.ratio, f.std_error),
+        day_text(static_cast<std::int64_t>(f.since_day)),
+        day_text(static_cast<std::int64_t>(f.found_day)),
+        second ? "a second sign of the loss there"
+               : "friction may have grown there; no loss of stiffness is proven with it"));
+  }
+  return out;
+}
+
+std::string losses_json(const HistoryLosses& l, const HistoryLosses& damping) {
   using nlohmann::ordered_json;
-  ordered_json out{{"schema", "framewatch.losses/1"},
-                   {"days", l.days},
-                   {"weather", l.covariates},
-                   {"losses", ordered_json::array()},
-                   {"elements", ordered_json::array()}};
-  for (const auto& f : l.found)
-    out["losses"].push_back({{"parameter", element_name(l, f.element)},
-                             {"ratio", f.ratio},
-                             {"std_error", f.std_error},
-                             {"since", day_text(static_cast<std::int64_t>(f.since_day))},
-                             {"found", day_text(static_cast<std::int64_t>(f.found_day))}});
+  const auto findings = [](const HistoryLosses& of) {
+    ordered_json out = ordered_json::array();
+    for (const auto& f : of.found)
+      out.push_back({{"parameter", element_name(of, f.element)},
+                     {"ratio", f.ratio},
+                     {"std_error", f.std_error},
+                     {"since", day_text(static_cast<std::int64_t>(f.since_day))},
+                     {"found", day_text(static_cast<std::int64_t>(f.found_day))}});
+    return out;
+  };
+  ordered_json out{{"schema", "framewatch.losses/1"}, {"days", l.days},
+                   {"weather", l.covariates},         {"losses", findings(l)},
+                   {"damping", findings(damping)},    {"elements", ordered_json::array()}};
   for (std::size_t p = 0; p < l.state.size(); ++p)
     out["elements"].push_back({{"parameter", p == l.elements.size() ? kAll : l.elements[p].c_str()},
                                {"evidence", l.state[p].evidence},

@@ -11,8 +11,10 @@
 
 namespace framewatch::daemon {
 
-/// The losses in the daily means of a history that weather does not explain.
+/// The losses of stiffness, or growths of damping, in the daily means of a history that weather
+/// does not explain.
 struct HistoryLosses {
+  Quantity quantity = Quantity::stiffness;
   std::vector<std::string> elements;  ///< frame stiffnesses with values
   std::vector<std::string> covariates;
   std::int64_t from_day = 0, to_day = 0;              ///< since 1970, UTC
@@ -27,8 +29,8 @@ struct HistoryLosses {
 };
 
 /// Watches the elements by their daily means, from the first day on.
-HistoryLosses find_losses(const std::vector<ElementDays>& elements, const WeatherTable& weather,
-                          const estimator::LifeBudget& budget);
+HistoryLosses find_losses(Quantity quantity, const std::vector<ElementDays>& elements,
+                          const WeatherTable& weather, const estimator::LifeBudget& budget);
 
 /// Returns how many losses there are, and what that means.
 std::string losses_sentence(const HistoryLosses& losses);
@@ -40,6 +42,10 @@ std::string loss_sentence(const HistoryLosses& losses,
 /// likely loss.
 std::vector<std::vector<std::string>> losses_rows(const HistoryLosses& losses);
 std::string losses_text(const HistoryLosses& losses);
-std::string losses_json(const HistoryLosses& losses);
+/// Returns what the damping says beside the losses of stiffness, a sentence each; empty if no
+/// damping has values. A growth at the place and time of a loss is a second sign of it.
+std::vector<std::string> damping_sentences(const HistoryLosses& damping,
+                                           const HistoryLosses& stiffness);
+std::string losses_json(const HistoryLosses& stiffness, const HistoryLosses& damping);
 
 }  // namespace framewatch::daemon

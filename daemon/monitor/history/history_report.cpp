@@ -130,8 +130,8 @@ std::string events_table(const std::vector<event_t>& events,
 }  // namespace
 
 std::string history_page(const std::string& structure, const std::vector<ElementDays>& elements,
-                         const HistoryLosses& losses, const WeatherTable& weather,
-                         const std::vector<event_t>& events,
+                         const HistoryLosses& losses, const HistoryLosses& damping,
+                         const WeatherTable& weather, const std::vector<event_t>& events,
                          const std::vector<StoredAcknowledgement>& acknowledgements) {
   const Span span{losses.from_day, losses.to_day};
   const std::string title = structure.empty() ? "Building" : structure;
@@ -145,6 +145,8 @@ std::string history_page(const std::string& structure, const std::vector<Element
   for (auto& row : rows)
     for (std::string& cell : row) cell = html_text(printable(cell));
   body += html_table({"element", "median, N/m", "evidence", "most likely"}, rows);
+  for (const std::string& sentence : damping_sentences(damping, losses))
+    body += "<p>" + html_text(printable(sentence)) + ".</p>\n";
   body += "<h2>Stiffness day by day</h2>\n";
   std::vector<SvgPlot> plots;
   for (std::size_t p = 0; p < elements.size(); ++p)

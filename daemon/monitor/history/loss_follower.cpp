@@ -6,7 +6,6 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/history_files.h"
 #include "estimator/numeric/nan.h"
 
@@ -47,9 +46,9 @@ std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& span
   return out;
 }
 
-LossFollower::LossFollower(const estimator::LifeBudget& budget, double window_s,
+LossFollower::LossFollower(Quantity quantity, const estimator::LifeBudget& budget, double window_s,
                            std::int64_t period_s)
-    : budget_(budget), window_s_(window_s), period_s_(period_s) {}
+    : quantity_(quantity), budget_(budget), window_s_(window_s), period_s_(period_s) {}
 
 /// Looks up what there is to watch. Begins with the first day if that has changed. Returns false if
 /// there is nothing to watch.
@@ -59,7 +58,7 @@ bool LossFollower::begin(SummaryQuery& summaries, std::int64_t to_day) {
   const std::int64_t first_day = floor_day(*first_us);
   std::vector<SummaryParameter> elements = summaries.parameters();
   std::erase_if(elements, [&](const SummaryParameter& p) {
-    return !is_frame_stiffness(p.name) || !summaries.newest_row(p.id, period_s_);
+    return !is_of_frame(quantity_, p.name) || !summaries.newest_row(p.id, period_s_);
   });
   std::vector<std::string> covariates =
       names_of(lasting_covariates(summaries.weather_spans(), first_day, to_day));
@@ -87,13 +86,13 @@ void LossFollower::take(SummaryQuery& summaries, std::int64_t from_day, std::int
   const WeatherTable weather = weather_of(summaries.weather(from_us, to_us), covariates_);
   for (std::int64_t day = from_day; day < to_day; ++day) {
     std::vector<estimator::DayValue> values;
-    for (const ElementDays& e : elements) values.push_back(e.value(day));
+    for (const ElementDays& e : elements) values.push_back(watched(quantity_, e.value(day)));
     const auto loss = watch_->push(static_cast<double>(day), values, weather.of(day));
     if (loss)
       found.push_back({loss->element == estimator::YearsWatch::kAllAlike
                            ? kWholeBuilding
                            : elements_[static_cast<std::size_t>(loss->element)].name,
-                       *loss});
+                       in_quantity(quantity_, *loss)});
   }
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "daemon/monitor/history/weather_table.h"
 #include "estimator/years/life_budget.h"
@@ -25,7 +26,8 @@ std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& span
 class LossFollower {
  public:
   /// window_s: length of the windows. period_s: of the summaries that are read.
-  LossFollower(const estimator::LifeBudget& budget, double window_s, std::int64_t period_s);
+  LossFollower(Quantity quantity, const estimator::LifeBudget& budget, double window_s,
+               std::int64_t period_s);
 
   struct Loss {
     std::string element;  ///< or kWholeBuilding
@@ -44,6 +46,7 @@ class LossFollower {
   void take(SummaryQuery& summaries, std::int64_t from_day, std::int64_t to_day,
             std::vector<Loss>& found);
 
+  Quantity quantity_;
   estimator::LifeBudget budget_;
   double window_s_;
   std::int64_t period_s_;

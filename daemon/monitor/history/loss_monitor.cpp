@@ -2,6 +2,7 @@
 #include "daemon/monitor/history/loss_monitor.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -20,7 +21,8 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr const char* kLossKind = "lasting_loss";
+constexpr std::array kKinds = {"lasting_loss", "lasting_damping"};  ///< by Quantity
+constexpr std::array kQuantities = {Quantity::stiffness, Quantity::damping};
 constexpr std::int64_t kMostKnown = 10000;
 constexpr std::chrono::minutes kTryAgain{10};
 
@@ -35,6 +37,11 @@ std::int64_t read_period_s(const HistorySettings& s) {
   return hours ? kHour_s : s.summary_s.back();
 }
 
+LossFollower follower_of(Quantity quantity, const Config& config) {
+  return {quantity, config.watch->life, config.pipeline.options.window_s,
+          read_period_s(*config.history)};
+}
+
 /// Returns a number for a place, so that losses of one day have different ids.
 std::int64_t place_number(const std::string& place) {
   std::uint64_t hash = 1469598103934665603u;
@@ -44,8 +51,8 @@ std::int64_t place_number(const std::string& place) {
 
 }  // namespace
 
-event_t loss_event(const LossFollower::Loss& loss, const estimator::LifeBudget& budget,
-                   const FrameLabels& labels) {
+event_t loss_event(Quantity quantity, const LossFollower::Loss& loss,
+                   const estimator::LifeBudget& budget, const FrameLabels& labels) {
   const estimator::YearsWatch::Finding& f = loss.finding;
   const bool all = loss.element == kWholeBuilding;
   event_t e{};
@@ -53,12 +60,20 @@ event_t loss_event(const LossFollower::Loss& loss, const estimator::LifeBudget& 
   e.time_us = day_us(f.found_day) + kDay_us;
   e.id = day_us(f.found_day) + 1'000'000 + place_number(loss.element);
   e.state = event_state::raised;
-  e.severity = severity::alarm;
-  e.kind = kLossKind;
+  e.severity = quantity == Quantity::stiffness ? severity::alarm : severity::warning;
+  e.kind = kKinds[static_cast<std::size_t>(quantity)];
   e.place = loss.element;
   e.value = 100 * f.ratio;
   e.std_error = 100 * f.std_error;
   e.unit = "%";
+  if (quantity == Quantity::damping) {
+    e.message = fmt::format(
+        "the damping of {} grew by {}, give or take {}, since {}, and weather does not explain it. "
+        "Beside a loss of stiffness there it is a second sign of damage; alone it may be friction",
+        all ? "all frames" : named_place(loss.element, labels), percent_words(f.ratio, f.std_error),
+        percent(f.std_error), day_text(static_cast<std::int64_t>(f.since_day)));
+    return e;
+  }
   e.message = fmt::format(
       "{} lost {} of {} stiffness, give or take {}, since {}, and weather does not explain it. "
       "{}Chance of a false one in {:g} years: {}",
@@ -73,8 +88,7 @@ event_t loss_event(const LossFollower::Loss& loss, const estimator::LifeBudget& 
 LossMonitor::LossMonitor(const Config& config)
     : config_(config),
       labels_(frame_labels(config.pipeline.structure)),
-      follower_(config.watch->life, config.pipeline.options.window_s,
-                read_period_s(*config.history)),
+      followers_{follower_of(Quantity::stiffness, config), follower_of(Quantity::damping, config)},
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 LossMonitor::News LossMonitor::update(std::int64_t stored_us) {
@@ -128,16 +142,20 @@ void LossMonitor::work(const std::stop_token& stop) {
 
 bool LossMonitor::is_known(const event_t& event) const {
   return std::ranges::any_of(known_, [&](const event_t& k) {
-    return k.place == event.place && std::abs(k.since_us - event.since_us) <= kSame_d * kDay_us;
+    return k.kind == event.kind && k.place == event.place &&
+           std::abs(k.since_us - event.since_us) <= kSame_d * kDay_us;
   });
 }
 
 void LossMonitor::read_known(SummaryQuery& summaries, News& news) {
   if (read_known_) return;
-  known_ = summaries.events_of(kLossKind, kMostKnown);
+  known_.clear();
+  for (const char* kind : kKinds)
+    for (event_t& e : summaries.events_of(kind, kMostKnown)) known_.push_back(std::move(e));
   for (const event_t& e : known_) news.before.note(e);
   for (const StoredAcknowledgement& a : summaries.acknowledgements(-kEver_us, kEver_us))
-    if (a.kind == kLossKind) news.before.acknowledge(a.id, {a.time_us, a.who, a.comment});
+    if (std::ranges::find(kKinds, a.kind) != kKinds.end())
+      news.before.acknowledge(a.id, {a.time_us, a.who, a.comment});
   read_known_ = summaries.problem().empty();
 }
 
@@ -146,14 +164,16 @@ void LossMonitor::look(std::int64_t to_day, const std::stop_token& stop, News& n
   news.problem = summaries.open(config_.history->directory);
   if (!news.problem.empty()) return;
   read_known(summaries, news);
-  const auto losses = follower_.advance(
-      summaries, to_day, [&stop] { return stop.stop_requested(); }, news.problem);
-  if (!losses) return;
-  for (const LossFollower::Loss& loss : *losses) {
-    event_t event = loss_event(loss, config_.watch->life, labels_);
-    if (is_known(event)) continue;
-    known_.push_back(event);
-    news.events.push_back(std::move(event));
+  for (const Quantity quantity : kQuantities) {
+    const auto losses = followers_[static_cast<std::size_t>(quantity)].advance(
+        summaries, to_day, [&stop] { return stop.stop_requested(); }, news.problem);
+    if (!losses) return;
+    for (const LossFollower::Loss& loss : *losses) {
+      event_t event = loss_event(quantity, loss, config_.watch->life, labels_);
+      if (is_known(event)) continue;
+      known_.push_back(event);
+      news.events.push_back(std::move(event));
+    }
   }
 }
 

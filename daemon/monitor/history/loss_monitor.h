@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -19,13 +20,14 @@
 
 namespace framewatch::daemon {
 
-/// Returns the event of a lasting loss. Its id and times follow from the finding.
-event_t loss_event(const LossFollower::Loss& loss, const estimator::LifeBudget& budget,
-                   const FrameLabels& labels);
+/// Returns the event of a lasting loss of stiffness, an alarm, or growth of damping, a warning. Its
+/// id and times follow from the finding.
+event_t loss_event(Quantity quantity, const LossFollower::Loss& loss,
+                   const estimator::LifeBudget& budget, const FrameLabels& labels);
 
-/// Looks once a day of sensor time for lasting losses in the daily means of a history, in a thread.
-/// Nothing is lost by a restart: it begins with the first day of the history. A loss that an event
-/// in the history tells already is not told again.
+/// Looks once a day of sensor time for lasting losses, and growths of damping, in the daily means
+/// of a history, in a thread. Nothing is lost by a restart: it begins with the first day of the
+/// history. A loss that an event in the history tells already is not told again.
 class LossMonitor {
  public:
   /// Sensor time after the end of a day until the history has it whole.
@@ -56,7 +58,7 @@ class LossMonitor {
   const FrameLabels labels_;
 
   // Used only by the thread.
-  LossFollower follower_;
+  std::array<LossFollower, 2> followers_;  ///< by Quantity
   std::vector<event_t> known_;
   bool read_known_ = false;
 

@@ -126,6 +126,12 @@ Finding finding_of(const event_t& e, const Config& config) {
                   "Have a structural engineer inspect {}; then acknowledge the "
                   "finding. docs/years.md says how it was found.",
                   place_name(e.place, config));
+  } else if (e.kind == "lasting_damping") {
+    f.kind = FindingKind::change;
+    f.text += ".";
+    f.advice =
+        fmt::format("Look at {} for friction, loose parts or cracks; then acknowledge the finding.",
+                    e.place == kWholeBuilding ? "the building" : place_name(e.place, config));
   } else if (e.kind == "weather") {
     f.kind = FindingKind::belief;
     f.text += ".";

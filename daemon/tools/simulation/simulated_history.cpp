@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -122,12 +123,17 @@ std::string write_simulated_history(const Scenario& s, const std::string& direct
     const std::int64_t at_us = first_us + h * kHour_s * kSecond_us;
     const estimator::WeatherHour& now = climate.next();
     if (tells && !write_weather(weather, at_us, now)) return unwritten();
+    for (const auto& [name, value] :
+         {std::pair("outside_degc", now.outside_degc), std::pair("humidity_pct", now.humidity_pct),
+          std::pair("wind_mps", now.wind_mps), std::pair("occupied_pct", now.occupied_pct)})
+      batch.weather.push_back({name, at_us, value});
     batch.periods.push_back(
         windows_of(at_us, s, weathered(truth_at(s, at_s), climate), table.elements(), random));
     if (batch.periods.size() < kHoursOfBatch && h + 1 < count) continue;
     if (const std::string problem = store.add(batch); !problem.empty())
       return fmt::format("{}: {}", path, problem);
     batch.periods.clear();
+    batch.weather.clear();
     step(h + 1);
   }
   store.close();

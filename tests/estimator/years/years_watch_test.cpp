@@ -14,6 +14,7 @@
 
 #include "estimator/numeric/nan.h"
 #include "estimator/numeric/quantile.h"
+#include "estimator/years/damping_days.h"
 #include "estimator/years/years_watch.h"
 
 namespace framewatch::estimator {
@@ -241,6 +242,52 @@ TEST(Years, AKnownLossIsNotFoundAgainAndTheNextOneIs) {
     EXPECT_EQ(findings[0].element, 2);
     EXPECT_EQ(findings[1].element, 5);
   }
+}
+
+/// Damping that moves ten times as much as the stiffness, against it, and scatters by 6 % a day.
+std::vector<YearsWatch::Finding> damping_of(unsigned seed, int days, double growth_ratio) {
+  World world(seed);
+  YearsWatch watch(kStories, kWeather, LifeBudget{});
+  std::vector<YearsWatch::Finding> out;
+  for (int day = 1; day <= days; ++day) {
+    world.next();
+    std::vector<DayValue> values;
+    for (std::size_t s = 0; s < kStories; ++s) {
+      const double grown = s == 3 && day >= kLossDay ? 1 + growth_ratio : 1;
+      const double damping =
+          1e5 * grown * std::pow(world.stories[s].value / kStiffness, -kDampingPower);
+      values.push_back(as_stiffness({damping, kDampingPower * kNoise * damping}));
+    }
+    const auto finding = watch.push(day, values, {world.degc, world.percent});
+    if (finding) out.push_back(as_damping(*finding));
+  }
+  return out;
+}
+
+TEST(Years, DampingThatGrowsIsFoundAndWeatherIsNot) {
+  for (unsigned seed = 0; seed < 8; ++seed)
+    EXPECT_TRUE(damping_of(seed, kThreeYears_d, 0).empty()) << seed;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const auto findings = damping_of(seed, kLossDay + 60, 0.6);
+    ASSERT_EQ(findings.size(), 1) << seed;
+    EXPECT_EQ(findings[0].element, 3);
+    EXPECT_LE(findings[0].found_day - kLossDay, 10);
+    EXPECT_NEAR(findings[0].ratio, 0.6, kMostErrors * findings[0].std_error);
+    EXPECT_LT(findings[0].std_error, 0.3);
+  }
+}
+
+TEST(Damping, AndItsStiffnessAreEachOthersInverse) {
+  const DayValue of_damping = as_stiffness({3e4, 300});
+  EXPECT_NEAR(std::pow(of_damping.value, -kDampingPower), 3e4, 1e-6);
+  EXPECT_NEAR(of_damping.std_error / of_damping.value, 0.01 / kDampingPower, 1e-12);
+  EXPECT_TRUE(std::isnan(as_stiffness({kNaN, kNaN}).value));
+  EXPECT_TRUE(std::isnan(as_stiffness({-1, 1}).value));
+  const double loss = std::pow(1.5, -1 / kDampingPower) - 1;
+  const YearsWatch::Finding grown = as_damping({0, 2, 1, loss, 1e-3});
+  EXPECT_NEAR(grown.ratio, 0.5, 1e-9);
+  const double slope = (std::pow(1 + loss - 1e-6, -kDampingPower) - 1.5) / 1e-6;
+  EXPECT_NEAR(grown.std_error, 1e-3 * slope, 1e-6);
 }
 
 TEST(Years, OneElementAloneIsWatched) {

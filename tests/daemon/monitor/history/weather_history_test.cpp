@@ -92,7 +92,7 @@ class WeatherHistory : public testing::Test {
     return out;
   }
   LossFollower follower() const {
-    return {config_.watch->life, config_.pipeline.options.window_s, kHour_s};
+    return {Quantity::stiffness, config_.watch->life, config_.pipeline.options.window_s, kHour_s};
   }
   std::vector<LossFollower::Loss> advance(LossFollower& follower, int days) const {
     SummaryQuery summaries = query();
@@ -108,8 +108,9 @@ class WeatherHistory : public testing::Test {
     HistoryRequest request;
     request.config = config_;
     request.parameters = summaries.parameters();
-    const std::vector<ElementDays> days = read_days(request, summaries);
-    return find_losses(days, weather_of(summaries.weather(-kEver_us, kEver_us), {"outside_degc"}),
+    const std::vector<ElementDays> days = read_days(request, Quantity::stiffness, summaries);
+    return find_losses(Quantity::stiffness, days,
+                       weather_of(summaries.weather(-kEver_us, kEver_us), {"outside_degc"}),
                        config_.watch->life);
   }
 
@@ -259,6 +260,19 @@ TEST_F(WeatherHistory, StopsAndSaysWhatItCannotRead) {
   EXPECT_EQ(problem, "");
   EXPECT_TRUE(advance(f, 10).empty());
   EXPECT_EQ(f.days(), 10);
+}
+
+TEST(LossEvent, OfDampingIsAWarningAboutItsPlace) {
+  const LossFollower::Loss grown{"cx_2_y1", {2, 20'000, 19'990, 0.31, 0.04}};
+  const event_t event = loss_event(Quantity::damping, grown, {}, {});
+  EXPECT_EQ(event.kind, "lasting_damping");
+  EXPECT_EQ(event.severity, severity::warning);
+  EXPECT_EQ(event.place, "cx_2_y1");
+  EXPECT_DOUBLE_EQ(event.value, 31);
+  EXPECT_EQ(event.message.rfind("the damping of story 2, frame y1 (cx_2_y1) grew by ", 0), 0u)
+      << event.message;
+  const event_t loss = loss_event(Quantity::stiffness, {"kx_2_y1", grown.finding}, {}, {});
+  EXPECT_NE(event.id, loss.id);
 }
 
 /// Waits for the news of a monitor.

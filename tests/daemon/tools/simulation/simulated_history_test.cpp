@@ -46,7 +46,6 @@ class SimulatedHistory : public testing::Test {
   nlohmann::json losses_of(const std::string& folder) {
     HistoryArguments a;
     a.place = directory_.path(folder);
-    a.weather = directory_.path(folder + ".csv");
     a.losses = a.json = true;
     testing::internal::CaptureStdout();
     code_ = history(a);
@@ -60,11 +59,15 @@ class SimulatedHistory : public testing::Test {
 
 TEST_F(SimulatedHistory, HistoryFindsTheLossInTheWeather) {
   const std::string loss = fmt::format(
-      "[climate]\n[[change]]\nat_s = {}\nparameter = \"ky_1_x2\"\nfactor = 0.95\n", 200 * kDay_s);
+      "[climate]\n[[change]]\nat_s = {0}\nparameter = \"ky_1_x2\"\nfactor = 0.95\n"
+      "[[change]]\nat_s = {0}\nparameter = \"cy_1_x2\"\nfactor = 1.8\n",
+      200 * kDay_s);
   ASSERT_EQ(simulate_into("h", scenario_text(220, loss)), 0) << problems_;
   const nlohmann::json found = losses_of("h");
   EXPECT_EQ(code_, 1);
   ASSERT_EQ(found.at("losses").size(), 1) << found.dump(1);
+  ASSERT_EQ(found.at("damping").size(), 1) << found.dump(1);
+  EXPECT_EQ(found.at("damping")[0].at("parameter"), "cy_1_x2");
   const nlohmann::json& one = found.at("losses")[0];
   EXPECT_EQ(one.at("parameter"), "ky_1_x2");
   EXPECT_EQ(one.at("since"), "2026-07-20");  // 200 days after 2026-01-01
@@ -73,7 +76,10 @@ TEST_F(SimulatedHistory, HistoryFindsTheLossInTheWeather) {
 
 TEST_F(SimulatedHistory, AHealthyBuildingLosesNothing) {
   ASSERT_EQ(simulate_into("h", scenario_text(100, "[climate]\n")), 0) << problems_;
-  EXPECT_EQ(losses_of("h").at("losses").size(), 0);
+  const nlohmann::json healthy = losses_of("h");
+  EXPECT_EQ(healthy.at("losses").size(), 0);
+  EXPECT_EQ(healthy.at("damping").size(), 0);
+  EXPECT_EQ(healthy.at("weather").size(), 4);  // the history has it
   EXPECT_EQ(code_, 0);
   const std::string weather = test::read_file(directory_.path("h.csv"));
   EXPECT_EQ(std::count(weather.begin(), weather.end(), '\n'), 1 + 100 * 24);
