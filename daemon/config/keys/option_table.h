@@ -71,7 +71,8 @@ std::vector<OptionSection> lcm_options();  ///< also of [commands]
 std::vector<OptionSection> can_options();
 std::vector<OptionSection> watch_options();  ///< also of [gap] and baseline files
 std::vector<OptionSection> history_options();
-std::vector<OptionSection> event_report_options();  ///< also of [fragility] and [actions]
+std::vector<OptionSection> event_report_options();  ///< also of [fragility]
+std::vector<OptionSection> action_options();        ///< also of [email] and [report]
 std::vector<OptionSection> fleet_options();
 std::vector<OptionSection> scenario_options();
 std::vector<OptionSection> effect_options();  ///< for configuration and scenario files

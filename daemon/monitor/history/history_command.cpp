@@ -179,6 +179,12 @@ int show_years(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery&
                         summaries.acknowledgements(r.from_us, r.to_us));
   if (const std::string why = summaries.problem(); !why.empty())
     return fail({fmt::format("{}: {}", summary_file(r.directory), why)});
+  if (!a.report.empty() && page.empty())
+    return fail(
+        {fmt::format("{} was not written: the history has no hour with a value of a "
+                     "frame's stiffness in this time. Choose another time with --from and "
+                     "--to; `framewatch history` shows what is stored",
+                     a.report)});
   if (!page.empty())
     if (const std::string why = drivers::write_text_file(a.report, page); !why.empty())
       return fail({why});
