@@ -137,10 +137,11 @@ void add_acknowledge(CommandList& commands) {
 
 void add_tell(CommandList& commands) {
   TellArguments& arguments = commands.arguments<TellArguments>();
-  CLI::App* command = commands.add(
-      "tell", "test the command and the webhook of [actions] with an event of kind \"test\"",
-      "Exit status: 0 delivered, 1 the command or the webhook failed, 2 bad usage or "
-      "configuration.\nExample: framewatch tell building.toml");
+  CLI::App* command =
+      commands.add("tell", "try each receiver of [actions] with an event of kind \"test\"",
+                   "Prints what each answered.\n"
+                   "Exit status: 0 delivered, 1 a receiver failed, 2 bad usage or "
+                   "configuration.\nExample: framewatch tell building.toml");
   add_installed_config(command, arguments.config);
   command->add_option("--message", arguments.message, "message of the event")
       ->capture_default_str();

@@ -142,6 +142,8 @@ Config reloaded(const Config& running, const Config& fresh) {
   take_section("event_report", fresh.event_report, out.event_report);
   take_section("fragility", fresh.fragility, out.fragility);
   take_section("actions", fresh.actions, out.actions);
+  take_section("email", fresh.email, out.email);
+  take_section("report", fresh.report, out.report);
   take_section("fleet", fresh.fleet, out.fleet);
   return out;
 }

@@ -22,6 +22,9 @@ void place_all_files(Config& config) {
   if (config.history) place_files("history", beside, *config.history);
   if (config.event_report) place_files("event_report", beside, *config.event_report);
   if (config.actions) place_files("actions", beside, *config.actions);
+  if (config.email) place_files("email", beside, *config.email);
+  if (config.report) place_files("report", beside, *config.report);
+  if (config.actions && config.email) config.actions->account = *config.email;
   if (config.fleet) place_files("fleet", beside, *config.fleet);
 }
 

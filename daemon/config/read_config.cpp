@@ -73,7 +73,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.event_report = read_event_report(document, problems);
   config.fragility =
       read_fragility(document, structure.stories_known ? structure.structure.stories : 0, problems);
-  config.actions = read_actions(document, problems);
+  read_notifications(document, config, problems);
   config.fleet = read_fleet(document, config.history.has_value(), problems);
   if (problems.size() == before)
     for (const std::string& rule : estimator::problems(config.pipeline))

@@ -42,6 +42,7 @@ struct HttpServer::Callbacks {
     *state = nullptr;
     auto* const server = static_cast<HttpServer*>(self);
     unsigned status = 0;
+    std::string text, retry_after;
     std::chrono::milliseconds delay{0};
     {
       const std::lock_guard<std::mutex> lock(server->mutex_);
@@ -49,9 +50,13 @@ struct HttpServer::Callbacks {
       status = server->statuses_.front();
       if (server->statuses_.size() > 1) server->statuses_.erase(server->statuses_.begin());
       delay = server->delay_;
+      text = server->text_;
+      retry_after = server->retry_after_;
     }
     std::this_thread::sleep_for(delay);
-    MHD_Response* response = MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
+    MHD_Response* response =
+        MHD_create_response_from_buffer(text.size(), text.data(), MHD_RESPMEM_MUST_COPY);
+    if (!retry_after.empty()) MHD_add_response_header(response, "Retry-After", retry_after.c_str());
     const MHD_Result result = MHD_queue_response(connection, status, response);
     MHD_destroy_response(response);
     return result;
@@ -92,6 +97,12 @@ HttpServer::~HttpServer() {
 void HttpServer::answer(std::vector<unsigned> statuses) {
   const std::lock_guard<std::mutex> lock(mutex_);
   statuses_ = std::move(statuses);
+}
+
+void HttpServer::say(const std::string& text, const std::string& retry_after) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  text_ = text;
+  retry_after_ = retry_after;
 }
 
 void HttpServer::delay(std::chrono::milliseconds by) {

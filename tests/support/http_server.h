@@ -30,6 +30,8 @@ class HttpServer {
 
   /// Sets the status of the next answers, one each. The last one stays.
   void answer(std::vector<unsigned> statuses);
+  /// Sets the text of the next answers, and their header Retry-After; empty: none.
+  void say(const std::string& text, const std::string& retry_after = "");
   /// Delays every answer by this time.
   void delay(std::chrono::milliseconds by);
   int port() const { return port_; }
@@ -40,6 +42,7 @@ class HttpServer {
 
   mutable std::mutex mutex_;  ///< guards the members below
   std::vector<unsigned> statuses_{200};
+  std::string text_, retry_after_;
   std::chrono::milliseconds delay_{0};
   std::vector<HttpRequest> requests_;
   MHD_Daemon* daemon_ = nullptr;

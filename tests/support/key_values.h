@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -19,9 +20,12 @@ inline std::string another_value(const daemon::Option& o) {
       return "[\"another\"]";
     case OptionType::boolean:
       return o.default_value == "true" ? "false" : "true";
-    case OptionType::choice:
+    case OptionType::choice: {
       // Not the first choice, because an unset field often has that value.
-      return "\"" + daemon::choices(o).back() + "\"";
+      const std::vector<std::string> all = daemon::choices(o);
+      const std::string last = "\"" + all.back() + "\"";
+      return last == o.default_value ? "\"" + all[all.size() - 2] + "\"" : last;
+    }
     case OptionType::integer:
     case OptionType::number:
     case OptionType::grid: {

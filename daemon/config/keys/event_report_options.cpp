@@ -6,60 +6,6 @@
 namespace framewatch::daemon {
 namespace {
 
-const Option kActions[] = {
-    {.key = "severity",
-     .choices = "information|warning|alarm",
-     .meaning = "Least severity of notified events. Their end is notified too.",
-     .target = into<&ActionSettings::severity>},
-    {.key = "kinds",
-     .meaning = "Kinds of events, such as \"stiffness_change\", \"gap\", \"bus_off\". Empty: all.",
-     .target = into<&ActionSettings::kinds>},
-    {.key = "changed_every_s",
-     .unit = "s",
-     .range = {0, 86400},
-     .meaning = "Least time between notifications of one event's changes; the newest change is "
-                "always sent.",
-     .target = into<&ActionSettings::changed_every_s>},
-    {.key = "per_minute",
-     .unit = "1/min",
-     .range = {1, 6000},
-     .meaning = "Most events per minute, each for the command and the webhook. Others wait, the "
-                "most severe first.",
-     .target = into<&ActionSettings::per_minute>},
-    {.key = "command",
-     .meaning = "Program and arguments, run once per event without a shell. The event is JSON on "
-                "standard input and FRAMEWATCH_* in the environment.",
-     .target = into<&ActionSettings::command>},
-    {.key = "command_timeout_s",
-     .unit = "s",
-     .range = {0.1, 3600},
-     .meaning = "The command's process group is ended after this time.",
-     .target = into<&ActionSettings::command_timeout_s>},
-    {.key = "webhook",
-     .meaning = "http:// or https:// address for a POST with JSON per event.",
-     .target = into<&ActionSettings::webhook>},
-    {.key = "webhook_header_file",
-     .meaning = "File of further request headers, one per line, relative to this file: "
-                "\"Authorization: Bearer ...\". Read for each request.",
-     .is_path = true,
-     .target = into<&ActionSettings::webhook_header_file>},
-    {.key = "webhook_ca_file",
-     .meaning = "CA certificates (PEM) for the server, instead of the system's.",
-     .is_path = true,
-     .target = into<&ActionSettings::webhook_ca_file>},
-    {.key = "webhook_timeout_s",
-     .unit = "s",
-     .range = {0.1, 300},
-     .meaning = "Timeout of one request, including the connection.",
-     .target = into<&ActionSettings::webhook_timeout_s>},
-    {.key = "webhook_patience_s",
-     .unit = "s",
-     .range = {0, 604800},
-     .meaning = "How long to retry, after 1 s, 2 s, 4 s and so on up to 60 s. Then the event is "
-                "lost and counted.",
-     .target = into<&ActionSettings::webhook_patience_s>},
-};
-
 const Option kEventReport[] = {
     {.key = "directory",
      .required = true,
@@ -163,8 +109,7 @@ const Option kFragility[] = {
 
 std::vector<OptionSection> event_report_options() {
   return {{"event_report", kEventReport, Reach::restart},
-          {"fragility", kFragility, Reach::restart},
-          {"actions", kActions, Reach::settings}};
+          {"fragility", kFragility, Reach::restart}};
 }
 
 }  // namespace framewatch::daemon

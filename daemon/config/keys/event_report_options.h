@@ -9,24 +9,6 @@
 
 namespace framewatch::daemon {
 
-/// [actions]: notifications of `framewatch run` when an event is raised, changes or is cleared,
-/// docs/actions.md.
-struct ActionSettings {
-  int severity = 1;                ///< lowest event_t::severity of delivered events
-  std::vector<std::string> kinds;  ///< kinds of delivered events; empty for all
-  double changed_every_s = 60;     ///< shortest time between two deliveries of an event's changes
-  int per_minute = 12;             ///< most deliveries by the command, and by the webhook
-
-  std::vector<std::string> command;  ///< program and arguments; empty for no command
-  double command_timeout_s = 30;
-
-  std::string webhook;               ///< URL; empty for no webhook
-  std::string webhook_header_file;   ///< file with further headers, one per line
-  std::string webhook_ca_file;       ///< trusted certificates; empty for the system's
-  double webhook_timeout_s = 10;     ///< timeout of one attempt
-  double webhook_patience_s = 3600;  ///< a failed delivery is repeated for this long
-};
-
 /// [event_report]: reports after strong motion, docs/operate.md.
 struct EventReportSettings {
   std::string directory;

@@ -98,8 +98,8 @@ std::span<const Option> options() {
     std::vector<Option> all;
     for (const auto table :
          {structure_options, channel_options, estimator_options, lcm_options, can_options,
-          watch_options, weather_options, history_options, event_report_options, fleet_options,
-          scenario_options, effect_options, expectation_options, about_options})
+          watch_options, weather_options, history_options, event_report_options, action_options,
+          fleet_options, scenario_options, effect_options, expectation_options, about_options})
       for (const OptionSection& some : table())
         for (const Option& row : some.rows) all.push_back(completed(row, some));
     return all;

@@ -72,7 +72,8 @@ std::vector<OptionSection> can_options();
 std::vector<OptionSection> watch_options();  ///< also of [gap] and baseline files
 std::vector<OptionSection> weather_options();
 std::vector<OptionSection> history_options();
-std::vector<OptionSection> event_report_options();  ///< also of [fragility] and [actions]
+std::vector<OptionSection> event_report_options();  ///< also of [fragility]
+std::vector<OptionSection> action_options();        ///< also of [email] and [report]
 std::vector<OptionSection> fleet_options();
 std::vector<OptionSection> scenario_options();
 std::vector<OptionSection> effect_options();  ///< for configuration and scenario files

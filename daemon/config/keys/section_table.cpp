@@ -143,8 +143,15 @@ const SectionDescription kSections[] = {
      "([how](operate.md#drift-damage-and-placard)). Without this section, damage is not judged.",
      Reach::restart},
     {"actions", "[actions]",
-     "Optional: `framewatch run` notifies people of events by a command and a webhook "
+     "Optional: `framewatch run` notifies people of events by a command, a webhook and e-mail "
      "([actions](actions.md)).",
+     Reach::settings},
+    {"email", "[email]",
+     "Optional: the mail server and the account that send e-mail ([e-mail](actions.md#e-mail)).",
+     Reach::settings},
+    {"report", "[report]",
+     "Optional: `framewatch run` writes a report every month ([monthly "
+     "report](years.md#a-report-every-month)).",
      Reach::settings},
     {"fleet", "[fleet]",
      "Optional: `framewatch uplink` sends the history to a hub of many buildings "

@@ -24,20 +24,6 @@ std::string problem_of(const std::vector<double>& periods_s) {
   return {};
 }
 
-/// Returns the rule that the address breaks, or an empty text.
-std::string problem_of_address(const std::string& url) {
-  const auto scheme = url.find("://");
-  if (!url.starts_with("http://") && !url.starts_with("https://"))
-    return "must begin with http:// or https://";
-  const auto host = url.substr(scheme + 3, url.find_first_of("/?#", scheme + 3) - scheme - 3);
-  if (host.empty()) return "must name a host";
-  if (host.find('@') != std::string::npos)
-    return "must not contain a password: put it into webhook_header_file";
-  if (std::any_of(url.begin(), url.end(), [](char c) { return c <= ' ' || c == 127; }))
-    return "must not contain spaces";
-  return {};
-}
-
 }  // namespace
 
 std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems) {
@@ -70,24 +56,6 @@ std::optional<EventReportSettings> read_event_report(const TomlValue& document,
     section.problem("red_drift_ratio", "must not be below yellow_drift_ratio");
   if (out.red_loss_ratio < out.yellow_loss_ratio)
     section.problem("red_loss_ratio", "must not be below yellow_loss_ratio");
-  return out;
-}
-
-std::optional<ActionSettings> read_actions(const TomlValue& document,
-                                           std::vector<TextProblem>& problems) {
-  if (!document.find("actions")) return std::nullopt;
-  ConfigSection section("actions", document, problems);
-  auto out = section.read<ActionSettings>();
-  if (!out.command.empty() && out.command.front().empty())
-    section.problem("command", "must begin with the name of a program");
-  if (section.given("webhook"))
-    if (const std::string rule = problem_of_address(out.webhook); !rule.empty())
-      section.problem("webhook", rule);
-  for (const char* key : {"webhook_header_file", "webhook_ca_file"})
-    if (section.given(key) && out.webhook.empty()) section.problem(key, "needs a webhook");
-  if (section.good("command") && section.good("webhook") && out.command.empty() &&
-      out.webhook.empty())
-    section.problem("", "needs a command or a webhook");
   return out;
 }
 

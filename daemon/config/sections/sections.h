@@ -62,8 +62,9 @@ std::optional<EventReportSettings> read_event_report(const TomlValue& document,
 /// `stories`: number of stories, or 0 if unknown.
 std::optional<FragilitySettings> read_fragility(const TomlValue& document, int stories,
                                                 std::vector<TextProblem>& problems);
-std::optional<ActionSettings> read_actions(const TomlValue& document,
-                                           std::vector<TextProblem>& problems);
+/// Reads [email], and [actions] and [report], which may use it, into `config`.
+void read_notifications(const TomlValue& document, Config& config,
+                        std::vector<TextProblem>& problems);
 /// `has_history`: true if [history] exists; messages for the hub wait there.
 std::optional<FleetSettings> read_fleet(const TomlValue& document, bool has_history,
                                         std::vector<TextProblem>& problems);

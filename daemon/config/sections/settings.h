@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/config/keys/action_options.h"
 #include "daemon/config/keys/channel_options.h"
 #include "daemon/config/keys/event_report_options.h"
 #include "daemon/config/keys/fleet_options.h"
@@ -45,6 +46,8 @@ struct Config {
   std::optional<EventReportSettings> event_report;  ///< without it no report is written
   std::optional<FragilitySettings> fragility;       ///< without it damage is not judged
   std::optional<ActionSettings> actions;            ///< without it no notifications are sent
+  std::optional<EmailSettings> email;               ///< without it no e-mail is sent
+  std::optional<ReportSettings> report;             ///< without it no monthly report is written
   std::vector<estimator::Effect> effects;           ///< effects beyond the linear model
   std::vector<ConfigProblem> doubts;   ///< warnings about allowed but implausible values
   std::optional<FleetSettings> fleet;  ///< for `framewatch uplink`

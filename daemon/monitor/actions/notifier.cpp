@@ -18,11 +18,13 @@ constexpr double kMinute_us = 60e6;
 constexpr std::chrono::milliseconds kLook{100};
 constexpr std::int64_t kPatienceAtEnd_us = 2'000'000;
 constexpr double kFirstWait_s = 1, kLongestWait_s = 60;
+constexpr double kLongestPause_s = 3600;  // that a receiver may ask for
 
 }  // namespace
 
 bool ActionQueue::wanted(const event_t& e) const {
   const std::vector<std::string>& kinds = settings_.kinds;
+  if (e.kind == kWellKind) return true;  // it is asked for by its time
   return e.severity >= settings_.severity &&
          (kinds.empty() || std::find(kinds.begin(), kinds.end(), e.kind) != kinds.end());
 }
@@ -82,7 +84,7 @@ void ActionQueue::acknowledged(const event_t& e) {
   if (!delivered_us_.contains(key)) remember(key, INT64_MIN / 2);
 }
 
-std::optional<event_t> ActionQueue::take(std::int64_t now_us) {
+std::optional<event_t> ActionQueue::take(std::int64_t now_us, int least_severity) {
   const auto full = static_cast<double>(settings_.per_minute);
   if (tokens_ < 0) tokens_ = full;
   tokens_ += full * static_cast<double>(now_us - filled_us_) / kMinute_us;
@@ -90,7 +92,7 @@ std::optional<event_t> ActionQueue::take(std::int64_t now_us) {
   filled_us_ = now_us;
   auto next = waiting_.end();
   for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
-    if (at->second.due_us > now_us) continue;
+    if (at->second.due_us > now_us || at->second.event.severity < least_severity) continue;
     if (next == waiting_.end() || std::pair(-at->second.event.severity, at->second.order) <
                                       std::pair(-next->second.event.severity, next->second.order))
       next = at;
@@ -130,6 +132,7 @@ void Notifier::configure(const ActionSettings& settings, double patience_s) {
   const std::lock_guard<std::mutex> lock(mutex_);
   settings_ = settings;
   patience_s_ = patience_s;
+  quiet_ = QuietHours(settings);
   queue_.configure(settings);
 }
 
@@ -185,7 +188,8 @@ void Notifier::work() {
           lose(static_cast<std::int64_t>(queue_.waiting()), "framewatch stops");
         return;
       }
-      event = stop_ ? queue_.take_any() : queue_.take(steady_clock_us());
+      event = stop_ ? queue_.take_any()
+                    : queue_.take(steady_clock_us(), quiet_.least_severity(host_clock_us()));
       if (!event) {
         wake_.wait_for(lock, kLook);
         continue;
@@ -218,7 +222,9 @@ bool Notifier::deliver_one(ActionSettings settings, double patience_s, const eve
       return true;
     }
     if (result.trouble != before) log(LogLevel::warning, name_ + ": " + result.trouble);
-    const auto wait_us = static_cast<std::int64_t>(1e6 * wait_s);
+    if (result.partly) return true;
+    const double asked_s = std::min(result.retry_after_s, kLongestPause_s);
+    const auto wait_us = static_cast<std::int64_t>(1e6 * std::max(wait_s, asked_s));
     const std::int64_t until_us = began_us + static_cast<std::int64_t>(1e6 * patience_s);
     if (!result.retry || stop_ || steady_clock_us() + wait_us > until_us) return false;
     wake_.wait_for(lock, std::chrono::microseconds(wait_us), [this] { return stop_; });

@@ -16,9 +16,14 @@
 #include <framewatch/event_t.hpp>
 
 #include "daemon/base/log.h"
-#include "daemon/config/keys/event_report_options.h"
+#include "daemon/config/keys/action_options.h"
+#include "daemon/monitor/actions/quiet_hours.h"
 
 namespace framewatch::daemon {
+
+/// Kind of the daily message that all is well, or what is not. It is delivered whatever its
+/// severity.
+inline constexpr const char* kWellKind = "well";
 
 /// Decides which events are delivered, when and in which order, with a bounded queue. Of each event
 /// only the newest news waits. Uses no clock: callers pass the time of a clock that is never set.
@@ -35,8 +40,9 @@ class ActionQueue {
   int put(const event_t& event, bool acknowledged, std::int64_t now_us);
   /// Tells that the event was acknowledged: only its end is still delivered.
   void acknowledged(const event_t& event);
-  /// Returns the next event to deliver; nullopt if no event is due.
-  std::optional<event_t> take(std::int64_t now_us);
+  /// Returns the next event to deliver; nullopt if no event is due. Events below `least_severity`
+  /// go on waiting.
+  std::optional<event_t> take(std::int64_t now_us, int least_severity = 0);
   /// Returns the next event regardless of the rate limit, for the end of the program.
   std::optional<event_t> take_any();
   std::size_t waiting() const { return waiting_.size(); }
@@ -64,13 +70,17 @@ class ActionQueue {
 struct DeliveryResult {
   std::string trouble = {};  ///< why it was not delivered; empty: delivered
   bool retry = false;        ///< another attempt may succeed
+  double retry_after_s = 0;  ///< shortest pause that the receiver asks for; 0: none
+  std::string answer = {};   ///< what the receiver said, in its words
+  bool partly = false;       ///< delivered, but not to everybody: `trouble` says to whom not
 };
 
 /// Returns true if the delivery should be given up because the program stops.
 using Abandoned = std::function<bool()>;
 
-/// Delivers events to one receiver (a command or a webhook) from a thread, so that the caller never
-/// waits. Repeats failed deliveries with growing pauses for the time that configure() sets.
+/// Delivers events to one receiver (a command, a webhook or a mail server) from a thread, so that
+/// the caller never waits. Repeats failed deliveries with growing pauses for the time that
+/// configure() sets.
 class Notifier {
  public:
   using Deliver =
@@ -85,7 +95,7 @@ class Notifier {
 
   /// `name` is for log lines. Delivers nothing before configure().
   Notifier(std::string name, Deliver deliver);
-  /// Delivers queued events for two seconds at most. Logs how many are lost.
+  /// Delivers queued events for two seconds at most, also in quiet hours. Logs how many are lost.
   ~Notifier();
 
   /// `patience_s`: how long attempts to deliver one event are repeated; 0: a single attempt.
@@ -108,6 +118,7 @@ class Notifier {
   std::condition_variable wake_;
   ActionSettings settings_;
   double patience_s_ = 0;
+  QuietHours quiet_;
   ActionQueue queue_;
   Counters counters_;
   RateLimitedLog losses_{LogLevel::error};

@@ -20,9 +20,4 @@ DeliveryResult run_hook(const ActionSettings& settings, const std::string& input
                         const std::vector<std::pair<std::string, std::string>>& environment,
                         const Abandoned& abandoned);
 
-/// POSTs a JSON text to settings.webhook once. An untrusted certificate and a redirection are
-/// failures. Sets `retry` unless the server refuses the request itself (400, 401, ...).
-DeliveryResult post_webhook(const ActionSettings& settings, const std::string& json,
-                            const Abandoned& abandoned);
-
 }  // namespace framewatch::daemon

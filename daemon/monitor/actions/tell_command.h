@@ -12,8 +12,8 @@ struct TellArguments {
   std::string message = "a test";
 };
 
-/// Runs `framewatch tell`: delivers an event of kind "test" to the command and the webhook of
-/// [actions]. Returns the exit code: 1 when one of them fails.
+/// Runs `framewatch tell`: delivers an event of kind "test" to each receiver of [actions] and
+/// prints what it answered. Returns the exit code: 1 when one of them fails.
 int tell_command(const TellArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -184,32 +184,13 @@ int fail(const std::vector<std::string>& problems) {
   return kBadInput;
 }
 
-/// Returns the covariates that a history keeps for these days.
-std::optional<WeatherTable> kept_weather(const HistoryRequest& r, SummaryQuery& summaries,
-                                         const std::vector<ElementDays>& elements) {
-  std::int64_t first = INT64_MAX, last = INT64_MIN;
-  for (const ElementDays& e : elements) {
-    first = std::min(first, e.days.begin()->first);
-    last = std::max(last, e.days.rbegin()->first);
-  }
-  if (elements.empty()) return WeatherTable{};
-  std::vector<WeatherSpan> spans = summaries.weather_spans();
-  for (WeatherSpan& s : spans) {  // readings before --from do not count
-    s.first_us = std::max(s.first_us, r.from_us);
-    s.last_us = std::min(s.last_us, r.to_us);
-  }
-  std::vector<std::string> names;
-  for (const WeatherSpan& s : lasting_covariates(spans, first, last + 1)) names.push_back(s.name);
-  return weather_of(summaries.weather(first * kDay_us, r.to_us), names);
-}
-
 /// Finds losses in the daily means, shows them and writes the page. Returns the exit code: 1 when
 /// there is a loss.
 int show_years(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries) {
   std::vector<std::string> problems;
   const std::vector<ElementDays> elements = read_days(r, Quantity::stiffness, summaries);
-  const auto weather =
-      a.weather.empty() ? kept_weather(r, summaries, elements) : read_weather(a.weather, problems);
+  const auto weather = a.weather.empty() ? std::optional(kept_weather(r, summaries, elements))
+                                         : read_weather(a.weather, problems);
   if (!weather) return fail(problems);
   const estimator::LifeBudget budget =
       r.config && r.config->watch ? r.config->watch->life : estimator::LifeBudget{};
@@ -223,6 +204,12 @@ int show_years(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery&
                         summaries.acknowledgements(r.from_us, r.to_us));
   if (const std::string why = summaries.problem(); !why.empty())
     return fail({fmt::format("{}: {}", summary_file(r.directory), why)});
+  if (!a.report.empty() && page.empty())
+    return fail(
+        {fmt::format("{} was not written: the history has no hour with a value of a "
+                     "frame's stiffness in this time. Choose another time with --from and "
+                     "--to; `framewatch history` shows what is stored",
+                     a.report)});
   if (!page.empty())
     if (const std::string why = drivers::write_text_file(a.report, page); !why.empty())
       return fail({why});

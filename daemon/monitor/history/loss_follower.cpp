@@ -46,6 +46,24 @@ std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& span
   return out;
 }
 
+WeatherTable kept_weather(const HistoryRequest& r, SummaryQuery& summaries,
+                          const std::vector<ElementDays>& elements) {
+  std::int64_t first = INT64_MAX, last = INT64_MIN;
+  for (const ElementDays& e : elements) {
+    first = std::min(first, e.days.begin()->first);
+    last = std::max(last, e.days.rbegin()->first);
+  }
+  if (elements.empty()) return {};
+  std::vector<WeatherSpan> spans = summaries.weather_spans();
+  for (WeatherSpan& s : spans) {  // readings before --from do not count
+    s.first_us = std::max(s.first_us, r.from_us);
+    s.last_us = std::min(s.last_us, r.to_us);
+  }
+  std::vector<std::string> names;
+  for (const WeatherSpan& s : lasting_covariates(spans, first, last + 1)) names.push_back(s.name);
+  return weather_of(summaries.weather(first * kDay_us, r.to_us), names);
+}
+
 LossFollower::LossFollower(Quantity quantity, const estimator::LifeBudget& budget, double window_s,
                            std::int64_t period_s)
     : quantity_(quantity), budget_(budget), window_s_(window_s), period_s_(period_s) {}

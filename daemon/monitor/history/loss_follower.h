@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/monitor/history/history_days.h"
+#include "daemon/monitor/history/history_request.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "daemon/monitor/history/weather_table.h"
 #include "estimator/years/life_budget.h"
@@ -20,6 +21,10 @@ namespace framewatch::daemon {
 /// covariate that came later would cost all the days before it. `to_day` is excluded.
 std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& spans,
                                             std::int64_t first_day, std::int64_t to_day);
+
+/// Returns the covariates that a history keeps for the days of these elements.
+WeatherTable kept_weather(const HistoryRequest& request, SummaryQuery& summaries,
+                          const std::vector<ElementDays>& elements);
 
 /// Finds losses in the daily means of a history as it grows, with the result of find_losses() over
 /// all days so far. Begins again from the first day when an element or a covariate joins or leaves.

@@ -48,6 +48,7 @@ class Reader {
   WeatherTable read() {
     std::string_view line;
     if (lines_.next(line)) read_header(line);
+    if (problems_.any()) return std::move(out_);  // without a header, its rows mean nothing
     while (!problems_.full() && lines_.next(line)) read_row(line);
     if (!problems_.any() && sums_.empty()) problems_.add(0, "no row with a value");
     put_means(sums_, out_);

@@ -39,15 +39,16 @@ namespace framewatch::daemon {
 namespace {
 
 /// Handles the events of `framewatch run`: passes those of the estimation and of the history to the
-/// command and the webhook of [actions], and acknowledges them on request.
+/// receivers of [actions], and acknowledges them on request.
 class LiveEvents {
  public:
   /// All arguments must outlive this.
-  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history)
+  LiveEvents(const Config& config, const std::string& url, lcm::LCM& lcm, LiveEstimation& live,
+             HistoryReport& history)
       : config_(config),
         live_(live),
         history_(history),
-        actions_(config, lcm),
+        actions_(config, url, lcm),
         desk_(config, lcm,
               [this](const event_t& event, const Acknowledgement& by) { acknowledged(event, by); }),
         commands_(config, "run", [this](const CommandPacket& command, const std::string& user) {
@@ -257,7 +258,7 @@ int run(const RunArguments& a) {
   RawBacklog missed = missed_samples(*config, live.estimation(), resumed);
   HistoryReport history(*config, *lcm);
   live.record_to(history.history());
-  LiveEvents events(*config, *lcm, live, history);
+  LiveEvents events(*config, a.url, *lcm, live, history);
   live.catch_up(std::move(missed));
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
   Housekeeping housekeeping(*config, text, a.state, a.state_every_s, starts, resumed);

@@ -156,7 +156,9 @@ void of_reception(const Heard& heard, std::vector<std::string>& out) {
 
 void of_actions(const action_status_t& s, std::vector<std::string>& out) {
   for (std::size_t i = 0; i < s.name.size(); ++i) {
-    if (!s.trouble[i].empty())
+    if (!s.trouble[i].empty() && s.name[i] == "report")
+      out.push_back("the monthly report is not done: " + s.trouble[i]);
+    else if (!s.trouble[i].empty())
       out.push_back(fmt::format("{} notifications of [actions] fail: {}", s.name[i], s.trouble[i]));
     else if (s.lost_us[i] > 0 && s.time_us - s.lost_us[i] < kDay_us)
       out.push_back(fmt::format("the {} of [actions] has lost {} events, the last one {} ago",

@@ -21,6 +21,7 @@
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/sections.h"
+#include "daemon/monitor/history/disk_forecast.h"
 #include "daemon/monitor/service/health.h"
 #include "daemon/page/findings/finding.h"
 #include "drivers/lcm/lcm_source.h"
@@ -33,9 +34,27 @@ nlohmann::json weather_json(const weather_status_t& w) {
           {"time_us", w.time_us}, {"accepted", w.accepted}, {"rejected", w.rejected}};
 }
 
+constexpr double kDiskSoon_days = 14;  // from here on, the status is bad
+
+/// When the disk of the history is full.
+struct DiskOutlook {
+  std::optional<double> days;  ///< empty: not within 10 years
+  std::string sentence;
+};
+
+/// Returns nullopt without a history, or if this user cannot read it.
+std::optional<DiskOutlook> disk_outlook(const Config& config, std::int64_t now_us) {
+  if (!config.history) return std::nullopt;
+  const std::optional<HistoryGrowth> growth = history_growth(*config.history, now_us);
+  if (!growth) return std::nullopt;
+  const std::optional<double> days = days_until_full(*config.history, *growth);
+  return DiskOutlook{days, disk_sentence(days, now_us)};
+}
+
 /// Returns the output of `framewatch status --json`. odd: the problems found. Requires
 /// heard.service. now_us: host clock.
-std::string status_json(const Heard& h, const Config& config, const std::vector<std::string>& odd,
+std::string status_json(const Heard& h, const Config& config,
+                        const std::optional<DiskOutlook>& disk, const std::vector<std::string>& odd,
                         const std::optional<UnitState>& unit, std::int64_t now_us) {
   const service_t& s = *h.service;
   nlohmann::json out{{"well", odd.empty()},
@@ -54,6 +73,7 @@ std::string status_json(const Heard& h, const Config& config, const std::vector<
                      {"resident_bytes", s.resident_bytes},
                      {"reloads", s.reloads},
                      {"reloads_refused", s.reloads_refused}};
+  if (disk) out["disk_full_in_days"] = disk->days ? nlohmann::json(*disk->days) : nullptr;
   if (h.status) {
     out["windows"] = h.status->windows;
     out["latency_s"] = h.status->latency_s;
@@ -229,13 +249,16 @@ void print_weather(const Heard& h) {
   }
 }
 
-void print_history(const Heard& h) {
+void print_history(const Heard& h) {}
+
+void print_history(const Heard& h, const std::optional<DiskOutlook>& disk) {
   if (!h.history) return;
   std::string text = fmt::format("{:.1f} GB in {}, {} samples lost to the disk",
                                  1e-9 * static_cast<double>(h.history->stored_bytes),
                                  h.history->directory, h.history->raw_dropped);
   if (h.history->disk_free_bytes >= 0)
     text += fmt::format(", {:.1f} GB free", 1e-9 * static_cast<double>(h.history->disk_free_bytes));
+  if (disk) text += "; " + disk->sentence;
   line("history", text);
 }
 
@@ -301,8 +324,9 @@ void print_can(const Heard& h) {
                                   h.can->frames_hz[b], 100 * h.can->load[b]));
 }
 
-void print_text(const Heard& h, const Config& config, const std::vector<std::string>& odd,
-                const std::optional<UnitState>& unit, std::int64_t now_us) {
+void print_text(const Heard& h, const Config& config, const std::optional<DiskOutlook>& disk,
+                const std::vector<std::string>& odd, const std::optional<UnitState>& unit,
+                std::int64_t now_us) {
   const std::string& name = config.pipeline.structure.name;
   fmt::print("{}: {} (framewatch {})\n", printable(name.empty() ? h.service->config : name),
              odd.empty() ? toned(Tone::good, "well", stdout) : toned(Tone::bad, "not well", stdout),
@@ -316,7 +340,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   print_watch(h);
   print_weather(h);
   print_can(h);
-  print_history(h);
+  print_history(h, disk);
   print_actions(h);
   print_hub(h, now_us);
   print_known(h, config, now_us);
@@ -373,11 +397,14 @@ int status_command(const StatusArguments& a) {
         fmt::format("its configuration file is wrong now: it keeps the previous configuration but "
                     "would not start again: {}: {}",
                     problems.front().where, problems.front().message));
+  const std::optional<DiskOutlook> disk = disk_outlook(*config, now_us);
+  if (disk && disk->days && *disk->days < kDiskSoon_days)
+    odd.push_back(disk->sentence + ": free it, or lower history.keep_gb");
   if (const std::string why = unit ? unit_oddity(*unit) : ""; !why.empty()) odd.push_back(why);
   if (a.json)
-    fmt::print("{}\n", status_json(heard, *config, odd, unit, now_us));
+    fmt::print("{}\n", status_json(heard, *config, disk, odd, unit, now_us));
   else
-    print_text(heard, *config, odd, unit, now_us);
+    print_text(heard, *config, disk, odd, unit, now_us);
   return odd.empty() ? 0 : kNotWell;
 }
 

@@ -15,7 +15,9 @@ namespace reload_keys_test {
 const std::string kEverySection =
     std::string(test::kGoodConfig) +
     "noise_mps2_per_rthz = 0.5\n[estimator]\n[lcm]\n[watch]\n[gap]\n[history]\ndirectory = \"h\"\n"
-    "[actions]\ncommand = [\"mail\"]\nwebhook = \"http://here/\"\n"
+    "[actions]\ncommand = [\"mail\"]\nwebhook = \"http://here/\"\nemail = [\"a@here\"]\n"
+    "time_zone = \"UTC\"\n[email]\nserver = \"here\"\nfrom = \"b@here\"\n[report]\ndirectory = "
+    "\"r\"\n"
     "[fleet]\nbuilding = \"a\"\nhubs = [\"tls://a:1\"]\ncertificate = \"c\"\nkey = \"k\"\n"
     "ca = \"ca\"\n";
 
@@ -28,14 +30,24 @@ const void* settings_of(const Config& c, std::string_view section) {
   if (section == "gap") return &*c.gap;
   if (section == "history") return &*c.history;
   if (section == "actions") return &*c.actions;
+  if (section == "email") return &*c.email;
+  if (section == "report") return &*c.report;
   if (section == "fleet") return &*c.fleet;
   return nullptr;
+}
+
+/// Returns the text without a key that cannot stand beside this one.
+std::string without_rival(const Option& o, std::string text) {
+  const std::string rival = "\nwebhook = ";
+  if (o.key != "webhook_file") return text;
+  const std::size_t at = text.find(rival);
+  return text.erase(at, text.find('\n', at + 1) - at);
 }
 
 /// Returns the text with this key of the section's last table set to a value.
 std::string with(const Option& o, const std::string& value) {
   const std::string key = std::string(o.key) + " = ", heading(find_section(o.section)->heading);
-  std::string text = kEverySection;
+  std::string text = without_rival(o, kEverySection);
   const std::size_t at = text.rfind(heading + "\n");
   const std::size_t old = text.find("\n" + key, at), end = text.find("\n[", at);
   if (old < end) text.erase(old + 1, text.find('\n', old + 1) - old);
@@ -45,6 +57,16 @@ std::string with(const Option& o, const std::string& value) {
 /// Returns values that satisfy rules between keys.
 std::string value_for(const Option& o) {
   if (o.key == "webhook") return "\"http://there/\"";
+  if (o.key == "webhook_file") return "\"there\"";
+  if (o.key == "webhook_format") return "\"teams\"";
+  if (o.key == "webhook_key_file") return "\"there\"\nwebhook_format = \"pagerduty\"";
+  if (o.key == "email") return "[\"c@there\"]";
+  if (o.key == "from") return "\"c@there\"";
+  if (o.key == "tls") return "\"tls\"";
+  if (o.key == "quiet_hours") return "\"22:00-07:00\"";
+  if (o.key == "well_at") return "\"08:00\"";
+  if (o.key == "time_zone") return "\"Europe/Rome\"";
+  if (o.key == "escalate") return "[\"webhook\", \"command\"]";
   if (o.key == "hubs") return "[\"tls://there:1\"]";
   if (o.key == "accept") return "[\"raw\"]";
   return test::another_value(o);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config/keys/about_options.h"
+#include "daemon/config/keys/action_options.h"
 #include "daemon/config/keys/can_options.h"
 #include "daemon/config/keys/channel_options.h"
 #include "daemon/config/keys/event_report_options.h"
@@ -105,6 +106,8 @@ TEST(KeyTargets, EveryKeyReachesItsFieldAndNoOther) {
   round_trip<EventReportSettings>("event_report", keys);
   round_trip<FragilitySettings>("fragility", keys);
   round_trip<ActionSettings>("actions", keys);
+  round_trip<EmailSettings>("email", keys);
+  round_trip<ReportSettings>("report", keys);
   round_trip<FleetSettings>("fleet", keys);
   round_trip<ReportAbout>("about", keys);
   round_trip<ReportPhotograph>("about.photograph", keys);

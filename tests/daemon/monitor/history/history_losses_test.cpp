@@ -154,6 +154,19 @@ TEST_F(HistoryLossesTest, SaysThatThereAreNoValues) {
   EXPECT_EQ(ran.out, "no hour with a value of a frame's stiffness\n");
 }
 
+TEST_F(HistoryLossesTest, APageWithoutValuesIsAFailure) {
+  HistoryArguments a;
+  a.parameters = {"cx*"};
+  a.report = directory_.path("years.html");
+  const Ran ran = run(a);
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_EQ(ran.out, "");
+  EXPECT_NE(ran.problems.find("years.html was not written: the history has no hour"),
+            std::string::npos)
+      << ran.problems;
+  EXPECT_EQ(test::read_file(a.report), "");
+}
+
 TEST_F(HistoryLossesTest, RefusesWhatItCannotCombine) {
   HistoryArguments a;
   a.out = directory_.path("x.csv");
@@ -170,7 +183,7 @@ TEST_F(HistoryLossesTest, RefusesWhatItCannotCombine) {
 }
 
 TEST_F(HistoryLossesTest, RefusesAMalformedTableWithEveryProblem) {
-  const Ran unit = run_with_weather("time,outside,inside_degc\n");
+  const Ran unit = run_with_weather("time,outside,inside_degc\nyesterday,3,4\n2025-01-01,3,400\n");
   EXPECT_EQ(unit.code, 2);
   EXPECT_EQ(unit.problems, weather_path_ + ":1: \"outside\": the name must end with its unit: " +
                                "_degc, _pct, _mps or _wpm2\n");

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "daemon/monitor/actions/curl_session.h"
+
+#include "daemon/base/file_digest.h"
+
+namespace framewatch::daemon {
+namespace {
+
+int should_stop(void* abandoned, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
+  return (*static_cast<const Abandoned*>(abandoned))() ? 1 : 0;
+}
+
+}  // namespace
+
+void add_line(CurlLines& lines, const std::string& line) {
+  curl_slist* const longer = ::curl_slist_append(lines.get(), line.c_str());
+  if (longer == nullptr) return;
+  (void)lines.release();
+  lines.reset(longer);
+}
+
+CurlSession::CurlSession(const std::string& ca_file, double timeout_s, const Abandoned& abandoned) {
+  static const CURLcode ready = ::curl_global_init(CURL_GLOBAL_DEFAULT);
+  if (ready != CURLE_OK) return;
+  curl_.reset(::curl_easy_init());
+  if (!curl_) return;
+  const auto timeout_ms = static_cast<long>(1e3 * timeout_s);
+  set(CURLOPT_SSL_VERIFYPEER, 1L);
+  set(CURLOPT_SSL_VERIFYHOST, 2L);
+  if (!ca_file.empty()) {
+    set(CURLOPT_CAINFO, ca_file.c_str());
+    set(CURLOPT_CAPATH, static_cast<const char*>(nullptr));
+  }
+  set(CURLOPT_NOSIGNAL, 1L);
+  set(CURLOPT_QUICK_EXIT, 1L);  // a slow name server must not delay the end of the program
+  set(CURLOPT_TIMEOUT_MS, timeout_ms);
+  set(CURLOPT_CONNECTTIMEOUT_MS, timeout_ms);
+  set(CURLOPT_NOPROGRESS, 0L);
+  set(CURLOPT_XFERINFOFUNCTION, &should_stop);
+  set(CURLOPT_XFERINFODATA, &abandoned);
+  set(CURLOPT_ERRORBUFFER, error_.data());
+}
+
+std::string CurlSession::perform(CURLcode& code) {
+  error_[0] = '\0';
+  code = ::curl_easy_perform(curl_.get());
+  if (code == CURLE_OK) return {};
+  return error_[0] != '\0' ? error_.data() : ::curl_easy_strerror(code);
+}
+
+long CurlSession::status() {
+  long status = 0;
+  ::curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &status);
+  return status;
+}
+
+std::optional<std::string> read_secret(const std::string& path, std::string& trouble) {
+  const std::optional<std::string> text = read_text_file(path, trouble);
+  if (!text) {
+    trouble = path + ": " + trouble;
+    return std::nullopt;
+  }
+  constexpr const char* kBlanks = " \t\r";
+  const std::string line = text->substr(0, text->find('\n'));
+  const auto first = line.find_first_not_of(kBlanks);
+  if (first == std::string::npos) {
+    trouble = path + ": the first line is empty";
+    return std::nullopt;
+  }
+  return line.substr(first, line.find_last_not_of(kBlanks) - first + 1);
+}
+
+}  // namespace framewatch::daemon
