@@ -212,7 +212,7 @@ void add_weather(MetricFamilies& out, const weather_status_t& w) {
   each(w.value);
   out.gauge("weather_age_seconds", "Time since that reading, of the sensors' clock.");
   each(age_s);
-  out.counter("weather_rejected", "Readings that did not count.")
+  out.counter("weather_rejected_total", "Readings that did not count.")
       .each("covariate", w.name, w.rejected);
 }
 

@@ -315,8 +315,6 @@ void for_each(Visit visit) {
   visit("COUNTS", accel_counts());
   visit("FRAMEWATCH_HISTORY", history_status());
   visit("TEMPERATURE", temperature());
-  visit("WEATHER", weather());
-  visit("FRAMEWATCH_WEATHER", weather_status());
   visit("FRAMEWATCH_ACTIONS", action_status());
   visit("FRAMEWATCH_ACKNOWLEDGE", acknowledge());
   visit("FRAMEWATCH_ACKNOWLEDGED", acknowledged());
@@ -325,6 +323,8 @@ void for_each(Visit visit) {
   visit("FRAMEWATCH_MODEL_FIT", model_fit());
   visit("FRAMEWATCH_SUMMARY", summary());
   visit("FRAMEWATCH_UPLINK", uplink_status());
+  visit("WEATHER", weather());
+  visit("FRAMEWATCH_WEATHER", weather_status());
 }
 
 }  // namespace framewatch::drivers::examples
