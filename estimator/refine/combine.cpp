@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include <Eigen/Cholesky>
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -23,8 +23,8 @@ std::optional<Piece> piece_of(const Refinement& r, const Eigen::VectorXd& scale)
     return std::nullopt;
   const Eigen::VectorXd unit = scale.cwiseInverse();
   const Eigen::MatrixXd covariance = unit.asDiagonal() * r.covariance * unit.asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  if (factor.info() != Eigen::Success) return std::nullopt;
+  const Cholesky factor(covariance);
+  if (!factor.good()) return std::nullopt;
   return Piece{r.theta.cwiseProduct(unit),
                factor.solve(Eigen::MatrixXd::Identity(scale.size(), scale.size()))};
 }
@@ -57,7 +57,7 @@ Refinement combine(const std::vector<Refinement>& estimates) {
     information += piece.information;
     weighted += piece.information * piece.theta;
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  const Cholesky factor(information);
   const Eigen::VectorXd mean = factor.solve(weighted);
   double apart = 0;
   for (const Piece& piece : pieces) {
