@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kDay_h = 24;
 constexpr double kYear_h = 365.25 * kDay_h;
-// Of a temperate climate: the warmest day is in July, the warmest hour at 15 h.
+// In a temperate climate the warmest day is in July and the warmest hour is 15 h.
 constexpr double kSpring_h = 110 * kDay_h, kMorning_h = 9;
 constexpr double kMean_pct = 70, kSeason_pct = 8, kRain_pct = 8, kDriest_pct = 15;
 constexpr double kFront_h = 3 * kDay_h, kRain_h = 2 * kDay_h, kGusts_h = 12;

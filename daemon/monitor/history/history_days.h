@@ -32,8 +32,8 @@ struct ElementDays {
 
 /// Returns the day since 1970, UTC.
 std::int64_t floor_day(std::int64_t time_us);
-/// What is watched for years: frames' stiffness (kx_, ky_) for losses, their damping (cx_, cy_) for
-/// growth.
+/// The quantities that are watched for years: the stiffness of frames (kx_, ky_) for losses, their
+/// damping (cx_, cy_) for growth.
 enum class Quantity { stiffness, damping };
 
 /// Returns true for this quantity of a frame.

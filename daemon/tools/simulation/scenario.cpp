@@ -184,7 +184,8 @@ std::optional<ClimateSettings> read_climate(const TomlValue* table,
   if (const auto start_us = read_utc(start))
     out.start_us = *start_us;
   else if (s.good("start"))
-    s.problem("start", fmt::format("\"{}\" is no time in UTC such as 2026-01-31T12:00:00Z", start));
+    s.problem("start",
+              fmt::format("\"{}\" is not a time in UTC such as 2026-01-31T12:00:00Z", start));
   estimator::Climate& c = out.climate;
   c.mean_degc = s.number("mean_degc");
   c.season_degc = s.number("season_degc");

@@ -104,7 +104,7 @@ TEST_F(SimulatedHistory, TellsWhatItCannotDo) {
                                              "[climate]\nstart = \"spring\"\n"
                                              "shortest_lag_days = 4\nlongest_lag_days = 3\n")),
             2);
-  EXPECT_NE(problems_.find("\"spring\" is no time"), std::string::npos) << problems_;
+  EXPECT_NE(problems_.find("\"spring\" is not a time"), std::string::npos) << problems_;
   EXPECT_NE(problems_.find("is shorter than shortest_lag_days"), std::string::npos) << problems_;
   SimulateArguments a;
   a.scenario = directory_.path("s.toml");
