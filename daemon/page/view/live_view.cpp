@@ -186,6 +186,7 @@ void LiveView::estimate(int window, const window_estimate_t& found) {
     shaking_.follow(decoded_estimate(window, found));
   newest_ = found;
   const std::lock_guard<std::mutex> lock(mutex_);
+  newest_us_ = found.window_end_us;
   history_.estimate(found);
 }
 
@@ -290,8 +291,35 @@ void LiveView::show_modes() {
   push_if_new("modes", json);
 }
 
+LiveView::ReadingOutcome LiveView::reading(const std::string& name, double value,
+                                           std::optional<std::int64_t> time_us) {
+  const auto covariate = std::ranges::find(config_.weather, name, &WeatherSettings::name);
+  if (covariate == config_.weather.end()) return ReadingOutcome::unknown_name;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!time_us) time_us = newest_us_;
+  if (!time_us) return ReadingOutcome::no_time;
+  if (readings_.size() >= kMostReadings) return ReadingOutcome::full;
+  weather_t message{};
+  message.time_us = *time_us;
+  message.name = name;
+  message.value = value;
+  readings_.emplace_back(covariate->lcm_channel, message);
+  return ReadingOutcome::taken;
+}
+
+void LiveView::send_readings() {
+  std::vector<std::pair<std::string, weather_t>> readings;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    readings.swap(readings_);
+  }
+  for (const auto& [channel, message] : readings)
+    publish_(message.time_us, channel, drivers::encoded(message));
+}
+
 void LiveView::flush() {
   ++flushes_;
+  send_readings();
   if (const std::string rows = motion_.take(); !rows.empty()) {
     push("motion", rows);
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -7,10 +7,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/session_command_t.hpp>
+#include <framewatch/weather_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
@@ -70,8 +72,20 @@ class LiveView {
   bool renew_baseline();
   /// Sends a command to `framewatch record`. Returns false when too many commands wait.
   bool tell_recorder(const session_command_t& command);
+  enum class ReadingOutcome {
+    taken,
+    unknown_name,  ///< no [[weather]] has it
+    no_time,       ///< no estimate has told the sensors' clock yet
+    full           ///< kMostReadings wait
+  };
+  /// Takes a reading of weather, which flush() sends to `framewatch run` over LCM. value: in the
+  /// unit of the name. time_us: sensor time; nullopt: that of the newest estimate.
+  ReadingOutcome reading(const std::string& name, double value,
+                         std::optional<std::int64_t> time_us);
 
  private:
+  static constexpr std::size_t kMostReadings = 100;
+  void send_readings();
   void show(DaemonMessage changed);
   void show_alarms(DaemonMessage changed);
   void parameters(const parameter_table_t& table);
@@ -121,6 +135,8 @@ class LiveView {
   double silent_s_ = 0;                      ///< since the newest sample
   std::map<std::string, std::string> kept_;  ///< newest JSON by event name, for viewers that join
   bool renew_ = false;
+  std::optional<std::int64_t> newest_us_;                    ///< sensor time of the newest estimate
+  std::vector<std::pair<std::string, weather_t>> readings_;  ///< by LCM channel, to be sent
 
   PageCommands commands_;  ///< last, because its thread pushes events
 };

@@ -8,7 +8,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kShortestToken = 16;
-constexpr std::string_view kVerbs[] = {"/acknowledge", "/baseline", "/session"};
+constexpr std::string_view kVerbs[] = {"/acknowledge", "/baseline", "/session", "/weather"};
 
 /// Removes the port and brackets: "[::1]:8080" becomes "::1".
 std::string host_name(const std::string& host) {

@@ -6,7 +6,9 @@
 
 #include <atomic>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -14,6 +16,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/served_file.h"
+#include "daemon/base/utc_time.h"
 #include "daemon/page/view/live_view.h"
 #include "daemon/page/web/session_playback.h"
 #include "daemon/page/web/web_answer.h"
@@ -21,6 +24,7 @@
 #include "daemon/page/web/web_sessions.h"
 #include "daemon/page/web/web_socket.h"
 #include "daemon/tools/session/session_desk.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -160,6 +164,7 @@ class WebServer::Implementation {
       return plain(c, MHD_HTTP_OK, "the baseline is learned anew from the next seconds");
     }
     if (path == "/session") return tell_recorder(c);
+    if (path == "/weather") return take_reading(c);
     const std::string text = header(c, "id", MHD_GET_ARGUMENT_KIND);
     std::int64_t id = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
@@ -169,6 +174,32 @@ class WebServer::Implementation {
     wake();
     return *asked == 0 ? plain(c, MHD_HTTP_OK, "acknowledged")
                        : plain(c, MHD_HTTP_ACCEPTED, std::to_string(*asked));
+  }
+
+  /// Takes a reading of weather for `framewatch run`.
+  MHD_Result take_reading(MHD_Connection* c) {
+    const auto text = [c](const char* name) { return header(c, name, MHD_GET_ARGUMENT_KIND); };
+    const std::string name = text("name"), time = text("time");
+    const std::optional<double> value = drivers::parse_number(text("value"));
+    if (!value || !std::isfinite(*value))
+      return plain(c, MHD_HTTP_BAD_REQUEST, "value: is not a number");
+    const std::optional<std::int64_t> time_us = read_utc(time);
+    if (!time.empty() && !time_us)
+      return plain(c, MHD_HTTP_BAD_REQUEST,
+                   "time: is not a time in UTC such as 2026-01-31T12:00:00Z");
+    switch (view_.reading(name, *value, time.empty() ? std::nullopt : time_us)) {
+      case LiveView::ReadingOutcome::unknown_name:
+        return plain(c, MHD_HTTP_NOT_FOUND, "no [[weather]] of the configuration has this name");
+      case LiveView::ReadingOutcome::no_time:
+        return plain(c, MHD_HTTP_CONFLICT,
+                     "framewatch run has published nothing yet: give the sensors' time");
+      case LiveView::ReadingOutcome::full:
+        return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE,
+                     "too many readings are waiting: try again later");
+      case LiveView::ReadingOutcome::taken:
+        break;
+    }
+    return plain(c, MHD_HTTP_ACCEPTED, "taken");
   }
 
   /// Answers with the id of the command. The recorder's answer comes later as an event with that

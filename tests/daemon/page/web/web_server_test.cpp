@@ -89,6 +89,46 @@ TEST_F(Served, PassesSessionCommandsToTheRecorderAndAnswersBack) {
   EXPECT_NE(events.find("\"overall\":0.25,\"noise_floor\":null"), std::string::npos);
 }
 
+TEST_F(Served, SendsReadingsOfWeatherToRun) {
+  config_.weather.push_back({.name = "outside_degc", .lcm_channel = "ROOF"});
+  const std::string cookie = "Cookie: framewatch=0123456789abcdef\r\n";
+  const auto post = [&](const std::string& query) {
+    return ask(server_.port(), request("POST /weather?" + query, cookie));
+  };
+  const auto sent = [&] {
+    published_.clear();
+    view_.flush();
+    return drivers::decoded<weather_t>(published_["ROOF"]);
+  };
+  EXPECT_NE(ask(server_.port(), request("POST /weather?name=outside_degc&value=4")).find("403"),
+            std::string::npos);
+  EXPECT_NE(post("name=inside_degc&value=4").find("404"), std::string::npos);
+  for (const char* bad : {"", "&value=warm", "&value=nan", "&value=4&time=noon"})
+    EXPECT_NE(post(std::string("name=outside_degc") + bad).find("400"), std::string::npos) << bad;
+  EXPECT_NE(post("name=outside_degc&value=4").find("409"), std::string::npos);
+  EXPECT_FALSE(sent());
+
+  EXPECT_NE(post("name=outside_degc&value=-4.5&time=2026-11-28T12:00:00Z").find("202"),
+            std::string::npos);
+  auto reading = sent();
+  ASSERT_TRUE(reading);
+  EXPECT_EQ(reading->name, "outside_degc");
+  EXPECT_EQ(reading->value, -4.5);
+  EXPECT_EQ(reading->time_us, 1'795'867'200'000'000);
+
+  window_estimate_t estimate{};
+  estimate.window_end_us = 7'000'000;
+  send("FRAMEWATCH_ESTIMATE", estimate);
+  EXPECT_NE(post("name=outside_degc&value=5").find("202"), std::string::npos);
+  reading = sent();
+  ASSERT_TRUE(reading);
+  EXPECT_EQ(reading->time_us, 7'000'000);
+  std::string answer;
+  for (int i = 0; i < 200 && answer.find("503") == std::string::npos; ++i)
+    answer = post("name=outside_degc&value=5");
+  EXPECT_NE(answer.find("503"), std::string::npos) << answer;
+}
+
 TEST_F(Served, AnAcknowledgementContainsTheViewersAddress) {
   event_t alarm{};
   alarm.id = 42;
