@@ -24,7 +24,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kHour_s = 3600;
 constexpr int kWindowsOfHour = 30;
 constexpr std::size_t kHoursOfBatch = 24 * 7;  // in one transaction
 constexpr std::uint64_t kStreamOfErrors = 1;   // the climate has its own random numbers
