@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <framewatch/accel_t.hpp>
+#include <framewatch/temperature_t.hpp>
 
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/tools/replay/replay_command.h"
