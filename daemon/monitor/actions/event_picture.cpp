@@ -63,7 +63,7 @@ std::optional<SvgPlot> parameter_plot(SummaryQuery& summaries, const event_t& ev
   SvgSeries q1{"quartiles", 5, SvgMark::thin_line, {}, {}}, q3{"", 5, SvgMark::thin_line, {}, {}},
       middle{"median", 0, SvgMark::line, {}, {}};
   std::int64_t before_us = 0;
-  double low = 0, high = 0;
+  double low = -1, high = 1;  // the noise of a steady parameter does not fill the plot
   for (const SummaryRow& row : rows) {
     const bool gap = before_us != 0 && row.start_us - before_us > 2 * period_s * kSecond_us;
     before_us = row.start_us;

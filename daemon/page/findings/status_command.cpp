@@ -249,8 +249,6 @@ void print_weather(const Heard& h) {
   }
 }
 
-void print_history(const Heard& h) {}
-
 void print_history(const Heard& h, const std::optional<DiskOutlook>& disk) {
   if (!h.history) return;
   std::string text = fmt::format("{:.1f} GB in {}, {} samples lost to the disk",
