@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/monitor/actions/curl_session.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
 #include "daemon/base/file_digest.h"
 
 namespace framewatch::daemon {
@@ -8,6 +12,20 @@ namespace {
 
 int should_stop(void* abandoned, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
   return (*static_cast<const Abandoned*>(abandoned))() ? 1 : 0;
+}
+
+/// Returns libcurl's reason without its " after 31 ms", which would make each repetition of a
+/// failure a new line in the log.
+std::string without_duration(std::string reason) {
+  constexpr std::string_view kAfter = " after ";
+  const std::size_t at = reason.find(kAfter);
+  if (at == std::string::npos) return reason;
+  const std::size_t number = at + kAfter.size();
+  const std::size_t end = std::min(reason.find_first_not_of("0123456789", number), reason.size());
+  for (const std::string_view unit : {" milliseconds", " ms"})
+    if (end > number && std::string_view(reason).substr(end).starts_with(unit))
+      return reason.erase(at, end + unit.size() - at);
+  return reason;
 }
 
 }  // namespace
@@ -45,7 +63,7 @@ std::string CurlSession::perform(CURLcode& code) {
   error_[0] = '\0';
   code = ::curl_easy_perform(curl_.get());
   if (code == CURLE_OK) return {};
-  return error_[0] != '\0' ? error_.data() : ::curl_easy_strerror(code);
+  return without_duration(error_[0] != '\0' ? error_.data() : ::curl_easy_strerror(code));
 }
 
 long CurlSession::status() {

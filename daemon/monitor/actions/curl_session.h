@@ -36,7 +36,8 @@ class CurlSession {
   void set(CURLoption option, Value value) {
     ::curl_easy_setopt(curl_.get(), option, value);
   }
-  /// Transfers. Returns an empty text, or the reason of a failure. Sets `code` to libcurl's result.
+  /// Transfers. Returns an empty text, or the reason of a failure, equal for equal failures. Sets
+  /// `code` to libcurl's result.
   std::string perform(CURLcode& code);
   /// Returns the status of the last transfer's answer: of HTTP or SMTP; 0 without an answer.
   long status();

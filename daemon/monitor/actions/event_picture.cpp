@@ -42,8 +42,30 @@ std::int64_t shown_period_s(SummaryQuery& summaries) {
   return out;
 }
 
-/// Draws the medians and quartiles of a parameter, in percent of its usual value, over the days
-/// before an event. Returns nullopt without values.
+/// Returns the page of an event report. Waits for one that is not written yet.
+std::optional<EmailAttachment> report_page(const std::string& folder, const std::string& segment,
+                                           const Abandoned& abandoned) {
+  if (!segment.ends_with(kPageEnding) ||
+      !is_event_report_name(
+          segment.substr(0, segment.size() - std::string_view(kPageEnding).size())))
+    return std::nullopt;
+  const std::int64_t until_us = steady_clock_us() + kWaitForReport_us;
+  for (;;) {
+    std::string problem;
+    if (std::optional<std::string> page = read_text_file(folder + "/" + segment, problem))
+      return EmailAttachment{segment, "text/html; charset=utf-8", *std::move(page)};
+    if (steady_clock_us() >= until_us || abandoned()) return std::nullopt;
+    ::usleep(kLookForReport_us);
+  }
+}
+
+}  // namespace
+
+EventSources event_sources(const Config& config) {
+  return {config.history ? config.history->directory : "",
+          config.event_report ? config.event_report->directory : ""};
+}
+
 std::optional<SvgPlot> parameter_plot(SummaryQuery& summaries, const event_t& event) {
   const std::vector<SummaryParameter> parameters = summaries.parameters();
   const auto parameter =
@@ -63,7 +85,7 @@ std::optional<SvgPlot> parameter_plot(SummaryQuery& summaries, const event_t& ev
   SvgSeries q1{"quartiles", 5, SvgMark::thin_line, {}, {}}, q3{"", 5, SvgMark::thin_line, {}, {}},
       middle{"median", 0, SvgMark::line, {}, {}};
   std::int64_t before_us = 0;
-  double low = 0, high = 0;
+  double low = -1, high = 1;  // the noise of a steady parameter does not fill the plot
   for (const SummaryRow& row : rows) {
     const bool gap = before_us != 0 && row.start_us - before_us > 2 * period_s * kSecond_us;
     before_us = row.start_us;
@@ -95,43 +117,18 @@ std::optional<SvgPlot> parameter_plot(SummaryQuery& summaries, const event_t& ev
   return plot;
 }
 
-/// Returns a plot as PNG; as SVG if the libraries are missing or fail.
-EmailAttachment as_picture(const SvgPlot& plot, const std::string& name) {
+EmailAttachment as_picture(const SvgPlot& plot, const std::string& name,
+                           const std::optional<SvgConverter>& converter) {
   const std::string document = plot.document(kTwoColumns_mm);
   const EmailAttachment svg{name + ".svg", "image/svg+xml", document};
-  std::string problem;
-  const std::optional<SvgConverter> converter = SvgConverter::load(problem);
   const drivers::Descriptor memory(::memfd_create("picture", MFD_CLOEXEC));
   if (!converter || memory.get() < 0) return svg;
   const std::string path = fmt::format("/proc/self/fd/{}", memory.get());
   if (!converter->convert(document, kPxPerMm * kTwoColumns_mm, plot.height(), "png", path).empty())
     return svg;
+  std::string problem;
   std::string bytes = read_text_file(path, problem).value_or("");
   return bytes.empty() ? svg : EmailAttachment{name + ".png", "image/png", std::move(bytes)};
-}
-
-/// Returns the page of an event report. Waits for one that is not written yet.
-std::optional<EmailAttachment> report_page(const std::string& folder, const std::string& segment,
-                                           const Abandoned& abandoned) {
-  if (!segment.ends_with(kPageEnding) ||
-      !is_event_report_name(
-          segment.substr(0, segment.size() - std::string_view(kPageEnding).size())))
-    return std::nullopt;
-  const std::int64_t until_us = steady_clock_us() + kWaitForReport_us;
-  for (;;) {
-    std::string problem;
-    if (std::optional<std::string> page = read_text_file(folder + "/" + segment, problem))
-      return EmailAttachment{segment, "text/html; charset=utf-8", *std::move(page)};
-    if (steady_clock_us() >= until_us || abandoned()) return std::nullopt;
-    ::usleep(kLookForReport_us);
-  }
-}
-
-}  // namespace
-
-EventSources event_sources(const Config& config) {
-  return {config.history ? config.history->directory : "",
-          config.event_report ? config.event_report->directory : ""};
 }
 
 std::optional<EmailAttachment> event_picture(const EventSources& sources, const event_t& event,
@@ -143,7 +140,8 @@ std::optional<EmailAttachment> event_picture(const EventSources& sources, const 
   if (!summaries.open(sources.history).empty()) return std::nullopt;
   const std::optional<SvgPlot> plot = parameter_plot(summaries, event);
   if (!plot) return std::nullopt;
-  return as_picture(*plot, printable(event.place));
+  std::string problem;
+  return as_picture(*plot, printable(event.place), SvgConverter::load(problem));
 }
 
 }  // namespace framewatch::daemon

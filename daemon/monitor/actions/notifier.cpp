@@ -110,8 +110,12 @@ std::optional<event_t> ActionQueue::take(std::int64_t now_us, int least_severity
 
 std::optional<event_t> ActionQueue::take_any() {
   if (waiting_.empty()) return std::nullopt;
-  event_t event = std::move(waiting_.begin()->second.event);
-  waiting_.erase(waiting_.begin());
+  const auto next = std::min_element(waiting_.begin(), waiting_.end(), [](auto& a, auto& b) {
+    return std::pair(-a.second.event.severity, a.second.order) <
+           std::pair(-b.second.event.severity, b.second.order);
+  });
+  event_t event = std::move(next->second.event);
+  waiting_.erase(next);
   return event;
 }
 
@@ -151,8 +155,12 @@ void Notifier::event(const event_t& event, bool acknowledged) {
 }
 
 void Notifier::acknowledged(const event_t& event) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  queue_.acknowledged(event);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    queue_.acknowledged(event);
+    needless_ = needless_ || (repeatable_ && *repeatable_ == std::pair(event.kind, event.id));
+  }
+  wake_.notify_one();
 }
 
 Notifier::Counters Notifier::counters() const {
@@ -197,16 +205,19 @@ void Notifier::work() {
       settings = settings_;
       patience_s = patience_s_;
       counters_.waiting = 1;
+      needless_ = false;
+      if (event->state != event_state::cleared) repeatable_.emplace(event->kind, event->id);
     }
     bool delivered = false;
     const std::string thrown =
         drivers::caught([&] { delivered = deliver_one(settings, patience_s, *event); });
     const std::lock_guard<std::mutex> lock(mutex_);
     counters_.waiting = 0;
+    repeatable_.reset();
     if (!thrown.empty()) counters_.trouble = thrown;
     if (delivered)
       ++counters_.told;
-    else
+    else if (!needless_)
       lose(1, fmt::format("{}; the event was \"{}\"", counters_.trouble, event->message));
   }
 }
@@ -226,8 +237,9 @@ bool Notifier::deliver_one(ActionSettings settings, double patience_s, const eve
     const double asked_s = std::min(result.retry_after_s, kLongestPause_s);
     const auto wait_us = static_cast<std::int64_t>(1e6 * std::max(wait_s, asked_s));
     const std::int64_t until_us = began_us + static_cast<std::int64_t>(1e6 * patience_s);
-    if (!result.retry || stop_ || steady_clock_us() + wait_us > until_us) return false;
-    wake_.wait_for(lock, std::chrono::microseconds(wait_us), [this] { return stop_; });
+    if (!result.retry || stop_ || needless_ || steady_clock_us() + wait_us > until_us) return false;
+    wake_.wait_for(lock, std::chrono::microseconds(wait_us), [this] { return stop_ || needless_; });
+    if (needless_) return false;
     settings = settings_;  // a reload may have corrected them
     patience_s = patience_s_;
   }

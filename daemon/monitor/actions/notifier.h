@@ -43,7 +43,7 @@ class ActionQueue {
   /// Returns the next event to deliver; nullopt if no event is due. Events below `least_severity`
   /// go on waiting.
   std::optional<event_t> take(std::int64_t now_us, int least_severity = 0);
-  /// Returns the next event regardless of the rate limit, for the end of the program.
+  /// Returns the most severe event regardless of the rate limit, for the end of the program.
   std::optional<event_t> take_any();
   std::size_t waiting() const { return waiting_.size(); }
   /// Returns how much news was replaced by newer news of the same event.
@@ -103,6 +103,7 @@ class Notifier {
   // As in ActionQueue.
   void delivered_before(const event_t& event);
   void event(const event_t& event, bool acknowledged);
+  /// Also ends the repetition of a failed delivery.
   void acknowledged(const event_t& event);
   Counters counters() const;
 
@@ -123,6 +124,9 @@ class Notifier {
   Counters counters_;
   RateLimitedLog losses_{LogLevel::error};
   bool stop_ = false;
+  /// Kind and id of the event that is being delivered, if its acknowledgement makes it needless.
+  std::optional<std::pair<std::string, std::int64_t>> repeatable_;
+  bool needless_ = false;                ///< it was acknowledged meanwhile
   std::int64_t give_up_us_ = INT64_MAX;  ///< steady clock
   std::thread thread_;                   ///< last, because it uses the members above
 };

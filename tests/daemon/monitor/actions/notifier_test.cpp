@@ -118,6 +118,22 @@ TEST(Notifier, WaitsAsLongAsTheServerAsks) {
   EXPECT_EQ(server.requests().size(), 2u);
 }
 
+TEST(Notifier, DoesNotRepeatAnAcknowledgedEvent) {
+  Notifier notifier("test", [](const ActionSettings&, const event_t& e, const Abandoned&) {
+    return e.state == event_state::cleared ? DeliveryResult{} : DeliveryResult{"closed", true};
+  });
+  notifier.configure({}, 3600);
+  notifier.event(event(1), false);
+  EXPECT_TRUE(test::comes_true([&] { return !notifier.counters().trouble.empty(); }, 30s));
+  notifier.acknowledged(event(2));
+  EXPECT_EQ(notifier.counters().waiting, 1);
+  notifier.acknowledged(event(1));
+  EXPECT_TRUE(test::comes_true([&] { return notifier.counters().waiting == 0; }, 30s));
+  EXPECT_EQ(notifier.counters().lost, 0);
+  notifier.event(event(1, event_state::cleared), false);
+  EXPECT_TRUE(test::comes_true([&] { return notifier.counters().told == 1; }, 30s));
+}
+
 TEST(Notifier, CountsAPartlyDeliveredEventAsToldAndKeepsTheTrouble) {
   Notifier notifier("email", [](const ActionSettings&, const event_t&, const Abandoned&) {
     DeliveryResult out{"b@example.org: refused", false};
@@ -250,6 +266,16 @@ TEST(ActionQueue, IsBoundedAndDropsTheLeastSevere) {
   EXPECT_EQ(queue.waiting(), ActionQueue::kMax);
   EXPECT_EQ(lost, static_cast<int>(ActionQueue::kMax) + 1);
   EXPECT_EQ(queue.take(0).value_or(event_t{}).id, 1);
+}
+
+TEST(ActionQueue, AtTheEndTheMostSevereEventsGoFirst) {
+  ActionQueue queue;
+  queue.configure({});
+  queue.put(event(1, event_state::raised, severity::warning), false, 0);
+  queue.put(event(2), false, 0);
+  queue.put(event(3), false, 0);
+  for (const std::int64_t id : {2, 3, 1}) EXPECT_EQ(queue.take_any().value_or(event_t{}).id, id);
+  EXPECT_FALSE(queue.take_any());
 }
 
 TEST(ActionQueue, KeepsSilentAboutAcknowledgedEventsUntilTheirEnd) {
