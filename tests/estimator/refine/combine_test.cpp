@@ -57,8 +57,10 @@ TEST(Combine, ManyEstimatesHaveTheErrorThatTheyState) {
     square += std::pow((all.theta[0] - kTruth[0]) / all.std_error[0], 2);
     stated += all.covariance(0, 0);
   }
-  // 3 whole pieces and 2 halves: a quarter of the variance, more where chance sets pieces apart.
-  EXPECT_NEAR(stated / kRuns, covariance(0, 0) / 4, 0.15 * covariance(0, 0) / 4);
+  // 3 whole pieces and 2 halves: a quarter of the variance. Where chance sets pieces further apart
+  // than they state, it grows: by the mean of max(1, c / 8), with c of chi-squared of 8 freedoms.
+  constexpr double kGrowth = 1.195;
+  EXPECT_NEAR(stated / kRuns, kGrowth * covariance(0, 0) / 4, 0.03 * covariance(0, 0) / 4);
   EXPECT_NEAR(square / kRuns, 0.9, 0.1);
 }
 
