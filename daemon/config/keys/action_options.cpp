@@ -155,7 +155,7 @@ const Option kReport[] = {
      .target = into<&ReportSettings::directory>},
     {.key = "weather",
      .meaning = "Table of weather as for `framewatch history --weather`, which another program "
-                "keeps up to date. Empty: the season stands for it.",
+                "keeps up to date. Empty: the weather of the history.",
      .is_path = true,
      .target = into<&ReportSettings::weather>},
     {.key = "email",

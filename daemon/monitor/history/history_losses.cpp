@@ -90,6 +90,15 @@ std::string loss_sentence(const HistoryLosses& l, const estimator::YearsWatch::F
                          : "");
 }
 
+std::string loss_words(const std::string& element, const estimator::YearsWatch::Finding& f,
+                       const FrameLabels& labels) {
+  const bool all = element == kWholeBuilding;
+  return fmt::format("{} lost {} of {} stiffness, give or take {}, since {}",
+                     all ? "all frames alike" : named_place(element, labels),
+                     percent_words(std::abs(f.ratio), f.std_error), all ? "their" : "its",
+                     percent(f.std_error), day_text(static_cast<std::int64_t>(f.since_day)));
+}
+
 std::vector<std::vector<std::string>> losses_rows(const HistoryLosses& l) {
   std::vector<std::vector<std::string>> out;
   for (std::size_t p = 0; p < l.state.size(); ++p) {
@@ -126,7 +135,7 @@ std::vector<std::string> damping_sentences(const HistoryLosses& damping,
   if (damping.elements.empty()) return {};
   const double least = std::pow(1 - damping.budget.least_loss, -estimator::kDampingPower) - 1;
   std::vector<std::string> out{
-      fmt::format("damping: {} of at least {:.0f} % that weather does not explain",
+      fmt::format("Damping: {} of at least {:.0f} % that weather does not explain",
                   damping.found.empty()       ? "no growth"
                   : damping.found.size() == 1 ? "1 growth"
                                               : fmt::format("{} growths", damping.found.size()),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/weather_table.h"
 #include "estimator/years/years_watch.h"
@@ -38,6 +39,11 @@ std::string losses_sentence(const HistoryLosses& losses);
 std::string probability_text(double probability);
 std::string loss_sentence(const HistoryLosses& losses,
                           const estimator::YearsWatch::Finding& finding);
+/// Returns the same in words for people who do not know the parameters: "story 2, frame y1
+/// (kx_2_y1) lost 5.1 % of its stiffness, give or take 0.4 %, since 2026-03-04". element: a
+/// parameter or kWholeBuilding.
+std::string loss_words(const std::string& element, const estimator::YearsWatch::Finding& finding,
+                       const FrameLabels& labels);
 /// Returns a row for each element, and one for all alike: name, median in N/m, evidence, most
 /// likely loss.
 std::vector<std::vector<std::string>> losses_rows(const HistoryLosses& losses);

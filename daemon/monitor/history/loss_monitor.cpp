@@ -74,14 +74,11 @@ event_t loss_event(Quantity quantity, const LossFollower::Loss& loss,
         percent(f.std_error), day_text(static_cast<std::int64_t>(f.since_day)));
     return e;
   }
-  e.message = fmt::format(
-      "{} lost {} of {} stiffness, give or take {}, since {}, and weather does not explain it. "
-      "{}Chance of a false one in {:g} years: {}",
-      all ? "all frames alike" : named_place(loss.element, labels),
-      percent_words(std::abs(f.ratio), f.std_error), all ? "their" : "its", percent(f.std_error),
-      day_text(static_cast<std::int64_t>(f.since_day)),
-      all ? "It may also be a mass, or weather that is not measured. " : "", budget.years,
-      probability_text(budget.probability));
+  e.message =
+      fmt::format("{}, and weather does not explain it. {}Chance of a false one in {:g} years: {}",
+                  loss_words(loss.element, f, labels),
+                  all ? "It may also be a mass, or weather that is not measured. " : "",
+                  budget.years, probability_text(budget.probability));
   return e;
 }
 

@@ -16,6 +16,7 @@
 #include "daemon/base/printable.h"
 #include "daemon/base/svg_plot.h"
 #include "daemon/base/utc_time.h"
+#include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/disk_forecast.h"
 #include "daemon/monitor/history/history_days.h"
@@ -86,6 +87,7 @@ std::vector<ElementMonth> months_of(const std::vector<ElementDays>& elements, co
 struct MonthData {
   std::vector<ElementDays> elements;
   HistoryLosses losses;
+  FrameLabels labels;
   std::vector<event_t> events;
   std::vector<StoredAcknowledgement> acknowledgements;
   std::vector<ChannelTotals> channels;
@@ -155,7 +157,12 @@ std::vector<std::string> sentences_of(const MonthData& data,
   std::size_t earlier = 0;
   for (const auto& f : data.losses.found) {
     if (found_in(f, month)) {
-      out.push_back("Changed: " + loss_sentence(data.losses, f));
+      const bool all = f.element == estimator::YearsWatch::kAllAlike;
+      out.push_back("Changed: " +
+                    loss_words(all ? kWholeBuilding
+                                   : data.losses.elements[static_cast<std::size_t>(f.element)],
+                               f, data.labels) +
+                    (all ? ". It may also be a mass, or weather that is not measured" : ""));
       changed = true;
     } else {
       ++earlier;
@@ -329,6 +336,7 @@ std::optional<MonthReport> month_report(const Config& config,
   data.losses = find_losses(Quantity::stiffness, data.elements,
                             weather ? *weather : kept_weather(request, summaries, data.elements),
                             config.watch ? config.watch->life : estimator::LifeBudget{});
+  data.labels = frame_labels(config.pipeline.structure);
   data.events = summaries.events(month.start_us(), month.end_us(), kMostMonthEvents);
   data.acknowledgements = summaries.acknowledgements(month.start_us(), month.end_us());
   data.channels = summaries.channels(month.start_us(), month.end_us());

@@ -96,13 +96,14 @@ TEST_F(MonthReportTest, SaysWhatChangedAndWhatIsHealthy) {
   ASSERT_TRUE(november) << problem_;
   EXPECT_TRUE(november->changed);
   const std::string text = all(*november);
-  EXPECT_TRUE(text.starts_with("Changed: kx_2_y1 -")) << text;
+  EXPECT_TRUE(text.starts_with("Changed: story 2, frame y1 (kx_2_y1) lost ")) << text;
   for (const char* part :
        {"Healthy: 3 of 4 frames", "values on 30 of 30 days", "in 25 % of the time",
         "Sensors: no samples", "Events: 1 alarms and 0 warnings (1 stiffness_change)", "he disk "})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
-  for (const char* part : {"<h1>north &lt;wing&gt;, 2026-11</h1>", "<strong>Changed: kx_2_y1",
-                           "stiffness by day", "&lt;b&gt;lost&lt;/b&gt;"})
+  for (const char* part : {"<h1>north &lt;wing&gt;, 2026-11</h1>",
+                           "<strong>Changed: story 2, frame y1 (kx_2_y1) lost ", "stiffness by day",
+                           "&lt;b&gt;lost&lt;/b&gt;"})
     EXPECT_NE(november->page.find(part), std::string::npos) << part;
 }
 
