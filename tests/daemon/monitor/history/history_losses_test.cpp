@@ -151,7 +151,9 @@ TEST_F(HistoryLossesTest, SaysThatThereAreNoValues) {
   a.parameters = {"cx*"};
   const Ran ran = run(a);
   EXPECT_EQ(ran.code, 0);
-  EXPECT_EQ(ran.out, "no hour with a value of a frame's stiffness\n");
+  EXPECT_EQ(ran.out,
+            "no hour with a value of a frame's stiffness\n"
+            "Damping: no growth of at least 11 % that weather does not explain\n");
 }
 
 TEST_F(HistoryLossesTest, APageWithoutValuesIsAFailure) {
