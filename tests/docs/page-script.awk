@@ -28,7 +28,7 @@ FNR == 1 { page = page == "" ? FILENAME : page }
   inside = 0
   if (file != "") print "END OF FILE" >(stem ".sh")
   if (run && option("seconds") != "")
-    last = "timeout --preserve-status --signal=INT " option("seconds") " " last
+    last = "interrupted " option("seconds") " " last
   if (run && option("status") != "")
     last = "s=0; " last " || s=$?; [[ ," option("status") ", = *,$s,* ]]"
   if (run && info ~ / background( |$)/) last = last " &\nsleep 2"

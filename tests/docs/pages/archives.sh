@@ -6,7 +6,7 @@ before() {
   framewatch simulate "$root/configs/scenario_table_two_story.toml" --seconds 60 --out rec.csv --quiet
   framewatch convert rec.csv --config building.toml --start-us 1795280400000000 rec.lcmlog
   framewatch run building.toml --quiet &
-  sleep 1
+  await_run
   lcm-logplayer --speed=1.5 rec.lcmlog >/dev/null
   kill -INT $!
   wait

@@ -50,7 +50,7 @@ END
   framewatch simulate scenario.toml --out record.csv --quiet
   framewatch convert record.csv --config building.toml --start-us 1795292200000000 record.lcmlog
   framewatch run building.toml &
-  sleep 1
+  await_run
   lcm-logplayer --speed=5 record.lcmlog >/dev/null
   for _ in {1..60}; do ls segments/*.lcmlog && return; sleep 1; done
   return 1
