@@ -51,7 +51,7 @@ END
   framewatch convert record.csv --config building.toml --start-us 1795292200000000 record.lcmlog
   framewatch run building.toml &
   await_run
-  lcm-logplayer --speed=5 record.lcmlog >/dev/null
+  lcm-logplayer --speed=2 record.lcmlog >/dev/null
   for _ in {1..60}; do ls segments/*.lcmlog && return; sleep 1; done
   return 1
 }

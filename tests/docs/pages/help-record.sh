@@ -1,7 +1,7 @@
 . "$here/table.sh"
 before() {
   link_configs
-  shake_live 200
+  shake_live 600
   sleep 1
 }
 expected='
