@@ -114,7 +114,7 @@ const Option kEmail[] = {
      .target = into<&EmailSettings::port>},
     {.key = "tls",
      .choices = "starttls|tls|none",
-     .meaning = "How the connection is encrypted. Without encryption there is no login.",
+     .meaning = "How the connection is encrypted. With none, framewatch does not log in.",
      .target = into<&EmailSettings::tls>},
     {.key = "from",
      .required = true,
@@ -122,8 +122,8 @@ const Option kEmail[] = {
      .target = into<&EmailSettings::from>},
     {.key = "login_file",
      .meaning = "File with the user in line 1 and the password in line 2. Read for each message. "
-                "Without it, the environment variables FRAMEWATCH_EMAIL_USER and "
-                "FRAMEWATCH_EMAIL_PASSWORD count; without them there is no login.",
+                "Default: the environment variables FRAMEWATCH_EMAIL_USER and "
+                "FRAMEWATCH_EMAIL_PASSWORD; if they are not set, framewatch does not log in.",
      .is_path = true,
      .target = into<&EmailSettings::login_file>},
     {.key = "ca_file",

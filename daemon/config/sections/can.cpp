@@ -33,6 +33,22 @@ using drivers::CanTiming;
 using drivers::DbcMessage;
 using drivers::DbcSignal;
 
+/// Returns the map of a whole message, without readings and multiplexors.
+CanMessageMap map_of(const DbcMessage& m) {
+  CanMessageMap map;
+  map.name = m.name;
+  map.id = m.id;
+  map.mask = m.extended ? 0x1FFFFFFFu : 0x7FFu;
+  map.extended = m.extended;
+  map.length = m.length;
+  map.fd = m.length > 8;
+  return map;
+}
+
+std::string fd_is_missing(const CanMessageMap& m, const std::string& interface) {
+  return fmt::format("{} has {} bytes: fd = true is missing for {}", m.name, m.length, interface);
+}
+
 /// A sensor node while it is read: its table, if any, and its channels.
 struct CanNodeReading : CanNodeSettings {
   drivers::CanNodeMap map;
@@ -262,19 +278,10 @@ class CanConfigReader {
     const CanSignal found = find_can_signal(buses_[*bus], w.dbc_signal);
     if (!found.problem.empty()) return problem("dbc_signal: " + found.problem);
     const DbcMessage& m = *found.message;
-    CanMessageMap map{.name = m.name,
-                      .id = m.id,
-                      .mask = m.extended ? 0x1FFFFFFFu : 0x7FFu,
-                      .extended = m.extended,
-                      .length = m.length,
-                      .fd = m.length > 8,
-                      .switches = switches_of(m, *found.signal),
-                      .readings = {},
-                      .counter = {},
-                      .clock = {}};
+    CanMessageMap map = map_of(m);
+    map.switches = switches_of(m, *found.signal);
     if (map.fd && !config_.can.buses[*bus].fd)
-      return problem(fmt::format("dbc_signal: {} has {} bytes: fd = true is missing for {}", m.name,
-                                 m.length, w.can));
+      return problem("dbc_signal: " + fd_is_missing(map, w.can));
     weather_messages_.insert(found.message);
     config_.can.values.push_back(
         {static_cast<int>(*bus), std::move(map), found.signal->field, covariate});
@@ -337,11 +344,8 @@ class CanConfigReader {
       if (map.name == m.name && std::equal(map.switches.begin(), map.switches.end(),
                                            switches.begin(), switches.end(), same))
         return map;
-    CanMessageMap map;
-    map.name = m.name;
-    map.extended = m.extended;
-    map.id = m.id + node.id_offset;
-    map.mask = m.extended ? 0x1FFFFFFFu : 0x7FFu;
+    CanMessageMap map = map_of(m);
+    map.id += node.id_offset;
     if (node.j1939) {
       const bool broadcast = ((m.id >> 16) & 0xFFu) >= 240;
       map.mask = broadcast ? 0x03FFFF00u : 0x03FF0000u;
@@ -350,8 +354,6 @@ class CanConfigReader {
         map.mask |= 0xFFu;
       }
     }
-    map.length = m.length;
-    map.fd = m.length > 8;
     map.switches = std::move(switches);
     node.map.messages.push_back(std::move(map));
     return node.map.messages.back();
@@ -386,10 +388,7 @@ class CanConfigReader {
         [&](const CanMessageMap& a, const CanMessageMap& b) { return rank(a) < rank(b); });
     const drivers::CanBusMap& bus = config_.can.buses[node.bus];
     for (const CanMessageMap& m : node.map.messages) {
-      if (m.fd && !bus.fd)
-        node_problem(node, "messages",
-                     fmt::format("{} has {} bytes: fd = true is missing for {}", m.name, m.length,
-                                 bus.interface));
+      if (m.fd && !bus.fd) node_problem(node, "messages", fd_is_missing(m, bus.interface));
       if (m.id > (m.extended ? 0x1FFFFFFFu : 0x7FFu))
         node_problem(node, "id_offset", fmt::format("id {:X} of {} is too large", m.id, m.name));
       if (node.j1939 && !m.extended)

@@ -12,6 +12,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/base64.h"
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
@@ -31,20 +32,6 @@ constexpr std::size_t kReplyCode = 3;      // digits
 constexpr const char* kGoodbye = "221";
 constexpr const char* kUser = "FRAMEWATCH_EMAIL_USER";
 constexpr const char* kPassword = "FRAMEWATCH_EMAIL_PASSWORD";
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    const std::size_t has = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < has ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= has ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
-}
 
 struct Login {
   std::string user, password;

@@ -93,9 +93,7 @@ std::optional<event_t> ActionQueue::take(std::int64_t now_us, int least_severity
   auto next = waiting_.end();
   for (auto at = waiting_.begin(); at != waiting_.end(); ++at) {
     if (at->second.due_us > now_us || at->second.event.severity < least_severity) continue;
-    if (next == waiting_.end() || std::pair(-at->second.event.severity, at->second.order) <
-                                      std::pair(-next->second.event.severity, next->second.order))
-      next = at;
+    if (next == waiting_.end() || at->second.goes_before(next->second)) next = at;
   }
   if (next == waiting_.end() || tokens_ < 1) return std::nullopt;
   tokens_ -= 1;
@@ -111,8 +109,7 @@ std::optional<event_t> ActionQueue::take(std::int64_t now_us, int least_severity
 std::optional<event_t> ActionQueue::take_any() {
   if (waiting_.empty()) return std::nullopt;
   const auto next = std::min_element(waiting_.begin(), waiting_.end(), [](auto& a, auto& b) {
-    return std::pair(-a.second.event.severity, a.second.order) <
-           std::pair(-b.second.event.severity, b.second.order);
+    return a.second.goes_before(b.second);
   });
   event_t event = std::move(next->second.event);
   waiting_.erase(next);

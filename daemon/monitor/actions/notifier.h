@@ -54,6 +54,10 @@ class ActionQueue {
   struct Waiting {
     event_t event;
     std::int64_t due_us, order;
+    /// Returns true if this is sent before `other`: the more severe first, then the older.
+    bool goes_before(const Waiting& other) const {
+      return std::pair(-event.severity, order) < std::pair(-other.event.severity, other.order);
+    }
   };
 
   bool wanted(const event_t& event) const;

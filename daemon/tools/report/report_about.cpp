@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/report/report_about.h"
 
-#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <utility>
 
+#include "daemon/base/base64.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/toml_document.h"
@@ -14,21 +14,6 @@
 
 namespace framewatch::daemon {
 namespace {
-
-/// Returns bytes in base64 (RFC 4648).
-std::string base64(const std::string& bytes) {
-  constexpr const char* kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k > bytes.size() ? '=' : kDigits[three >> (18 - 6 * k) & 63];
-  }
-  return out;
-}
 
 /// Returns "image/jpeg" or "image/png" by the first bytes; "" for other files.
 std::string picture_type(const std::string& bytes) {

@@ -51,15 +51,16 @@ TEST(Notifier, NeverBlocksItsCallerAndEndsInTime) {
   EXPECT_LT(1e-6 * static_cast<double>(steady_clock_us()) - end_s, kLongestEnd_s);
 }
 
+DeliveryResult post(const ActionSettings& s, const event_t& e, const Abandoned& abandoned) {
+  return post_webhook(s, e, "b", abandoned);
+}
+
 TEST(Notifier, RetriesUntilTheServerAcceptsAndCountsFailures) {
   test::HttpServer server;
   server.answer({500, 503, 200, 404, 200});
   ActionSettings settings;
   settings.webhook = "http://127.0.0.1:" + std::to_string(server.port());
-  Notifier notifier("webhook",
-                    [](const ActionSettings& s, const event_t& e, const Abandoned& abandoned) {
-                      return post_webhook(s, e, "b", abandoned);
-                    });
+  Notifier notifier("webhook", post);
   notifier.configure(settings, 60);
   notifier.event(event(1), false);
   EXPECT_TRUE(test::comes_true([&] { return !notifier.counters().trouble.empty(); }, kSoon));
@@ -82,10 +83,7 @@ TEST(Notifier, SendsWaitingEventsToAReturningServerUntilATimeout) {
   }
   ActionSettings settings;
   settings.webhook = "http://127.0.0.1:" + std::to_string(port);
-  Notifier notifier("webhook",
-                    [](const ActionSettings& s, const event_t& e, const Abandoned& abandoned) {
-                      return post_webhook(s, e, "b", abandoned);
-                    });
+  Notifier notifier("webhook", post);
   notifier.configure(settings, 60);
   notifier.event(event(1), false);
   notifier.event(event(2), false);
@@ -105,10 +103,7 @@ TEST(Notifier, WaitsAsLongAsTheServerAsks) {
   server.say("", "3");
   ActionSettings settings;
   settings.webhook = "http://127.0.0.1:" + std::to_string(server.port());
-  Notifier notifier("webhook",
-                    [](const ActionSettings& s, const event_t& e, const Abandoned& abandoned) {
-                      return post_webhook(s, e, "b", abandoned);
-                    });
+  Notifier notifier("webhook", post);
   notifier.configure(settings, 60);
   const double waited_s = seconds_for([&] {
     notifier.event(event(1), false);
