@@ -16,11 +16,9 @@ namespace framewatch::daemon {
 /// once, with status kFailed.
 class StopLimit {
  public:
-  static constexpr std::chrono::seconds kLimit{8};
-
   /// `requested` tells whether a stop was requested. `give_up` ends the process; it is not called
   /// after the destructor has begun.
-  explicit StopLimit(std::function<bool()> requested, std::chrono::milliseconds limit = kLimit,
+  explicit StopLimit(std::function<bool()> requested, std::chrono::milliseconds limit,
                      std::function<void()> give_up = &end_process);
   /// The stop is complete.
   ~StopLimit();

@@ -52,8 +52,9 @@ void add_run(CommandList& commands) {
   RunArguments& arguments = commands.arguments<RunArguments>();
   CLI::App* command = commands.add(
       "run", "run the daemon: read live samples (LCM, CAN), publish estimates (LCM)",
-      "SIGHUP reloads CONFIG. Changes that need a restart are refused.\nExit status: 0 stopped, 2 "
-      "bad usage, configuration or input.\nExample: framewatch run configs/table_two_story.toml");
+      "SIGHUP reloads CONFIG. Changes that need a restart are refused.\nExit status: 0 stopped, 1 "
+      "the disk did not take what was left, 2 bad usage, configuration or input.\nExample: "
+      "framewatch run configs/table_two_story.toml");
   add_config(commands, command, arguments.config);
   add_url(command, arguments.url);
   add_file(command, "--state", arguments.state,
@@ -61,6 +62,15 @@ void add_run(CommandList& commands) {
            "every --state-every seconds and at the end");
   command->add_option("--state-every", arguments.state_every_s, "seconds between state saves")
       ->check(CLI::Range(1, 86400))
+      ->capture_default_str();
+  // A container gets 10 s to stop.
+  command
+      ->add_option(
+          "--stop-within", arguments.stop_within_s,
+          "seconds after a stop signal in which the disk must take what is left; then\nrun "
+          "ends with status 1")
+      ->envname("FRAMEWATCH_STOP_WITHIN")
+      ->check(CLI::Range(1, 3600))
       ->capture_default_str();
   add_file(command, "--can-log", arguments.can_log,
            "log every frame of the CAN buses to this file, in the format of candump -l");

@@ -232,7 +232,7 @@ int run(const RunArguments& a) {
       return refuse("run", fmt::format("{}: {}", a.state, why));
 
   catch_stop_signals();
-  StopLimit limit(&stop_requested);
+  StopLimit limit(&stop_requested, std::chrono::seconds(a.stop_within_s));
   catch_reload_signal();
   ServiceManager manager;
   const auto lcm = open_lcm_with_retry(*config, a.url, manager, error);

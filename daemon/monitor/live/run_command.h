@@ -14,6 +14,7 @@ struct RunArguments {
   bool by_name = false;      ///< nodes name the channels that have no source
   std::string state = {};    ///< file that keeps the state over a restart; empty: not kept
   int state_every_s = 60;    ///< seconds between two writes of the state
+  int stop_within_s = 8;     ///< longest time from a stop signal to the end of the process
   std::string can_log = {};  ///< file for the frames of the CAN buses; empty: not written
 };
 
