@@ -16,7 +16,7 @@ namespace durable_file_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 3s;          // for actions that take a quarter of a second
+constexpr auto kSoon = 60s;         // for actions that take a quarter of a second
 constexpr auto kPastSync = 2500ms;  // the file is forced onto the disk every second
 
 template <typename Condition>

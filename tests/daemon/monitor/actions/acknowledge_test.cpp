@@ -37,7 +37,7 @@ namespace acknowledge_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 20s;  // for actions that take a second or two on an idle machine
+constexpr auto kSoon = 60s;  // for actions that take a second or two on an idle machine
 
 event_t event(std::int64_t id, int state = event_state::raised) {
   event_t e{};

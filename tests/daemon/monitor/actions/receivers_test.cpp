@@ -21,10 +21,10 @@ namespace hook_command_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr double kLongestEnd_s = 6;  // to end a process group that ignores SIGTERM
+constexpr double kLongestEnd_s = 30;  // to end a process group that ignores SIGTERM
 constexpr double kShortTimeout_s = 0.4;
-constexpr double kTimeToBegin_s = 3;  // a shell and its child start, on a busy machine
-constexpr auto kSoon = 10s;           // for short actions on an idle machine
+constexpr double kTimeToBegin_s = 10;  // a shell and its child start, on a busy machine
+constexpr auto kSoon = 60s;           // for short actions on an idle machine
 
 class Hook : public testing::Test {
  protected:
@@ -105,7 +105,7 @@ TEST_F(Hook, IsEndedWithItsGroupWhenItTakesTooLong) {
   settings.command_timeout_s = kTimeToBegin_s;
   DeliveryResult result;
   const double took_s = seconds_for([&] { result = run(settings); });
-  EXPECT_NE(result.trouble.find("ended after 3 s"), std::string::npos) << result.trouble;
+  EXPECT_NE(result.trouble.find("ended after 10 s"), std::string::npos) << result.trouble;
   EXPECT_LT(took_s, kTimeToBegin_s + kLongestEnd_s);
   ASSERT_NE(file("pid"), "");
   const pid_t pid = std::stoi(file("pid"));
