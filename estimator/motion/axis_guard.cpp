@@ -306,14 +306,18 @@ bool AxisGuard::others_predict(std::size_t a, double ratio, double resolution) {
 
 /// Updates the changes of every axis. Call it before removing any sample of this instant.
 void AxisGuard::watch_changes() {
-  const int ages = std::min(waiting_, kSlots) - 1;
-  for (std::size_t a = 0; a < state_.size(); ++a) {
-    change_[a] = way_[a] = 0;
-    for (int age = ages - 1; age >= 0; --age) {
-      const double change = std::abs(held(age).accel[a] - held(age + 1).accel[a]);
-      change_[a] = std::isnan(change) ? 0 : change;
+  std::fill(way_.begin(), way_.end(), 0.0);
+  std::fill(change_.begin(), change_.end(), 0.0);
+  for (int age = std::min(waiting_, kSlots) - 2; age >= 0; --age) {
+    const double* const now = held(age).accel.data();
+    const double* const before = held(age + 1).accel.data();
+    for (std::size_t a = 0; a < state_.size(); ++a) {
+      const double change = std::abs(now[a] - before[a]);
+      change_[a] = change >= 0 ? change : 0;  // 0 for NaN
       way_[a] += change_[a];
     }
+  }
+  for (std::size_t a = 0; a < state_.size(); ++a) {
     State& s = state_[a];
     s.motion += forget_ * (change_[a] - s.motion);
     s.strongest = std::max(keep_strongest_ * s.strongest, s.motion);

@@ -2,9 +2,17 @@
 #include "estimator/motion/drift_controlled_integrator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "estimator/numeric/kernels.h"
+
 namespace framewatch::estimator {
+namespace {
+
+constexpr int kMostOutputs = 5;  // of a DerivativeTriple
+
+}  // namespace
 
 HighPass::HighPass(double corner_hz, double rate_hz) {
   const double w = std::tan(M_PI * corner_hz / rate_hz);
@@ -16,10 +24,18 @@ HighPass::HighPass(double corner_hz, double rate_hz) {
 
 DriftControlledIntegrator::DriftControlledIntegrator(const std::vector<DerivativeTriple>& triples,
                                                      const HighPass& high_pass)
-    : triples_(triples),
-      high_pass_(high_pass),
+    : high_pass_(high_pass),
       axes_(triples.size()),
-      length_(static_cast<std::size_t>(triples.front().length())) {
+      length_(static_cast<std::size_t>(triples.front().length())),
+      outputs_(padded(triples.front().held_second.empty() ? 3 : kMostOutputs)) {
+  for (const DerivativeTriple& triple : triples)
+    for (std::size_t k = 0; k < length_; ++k) {
+      taps_.resize(taps_.size() + static_cast<std::size_t>(outputs_), 0.0);
+      double* const tap = taps_.data() + taps_.size() - outputs_;
+      tap[0] = triple.value[k], tap[1] = triple.first[k], tap[2] = triple.second[k];
+      if (triple.held_second.empty()) continue;
+      tap[3] = triple.held_first[k], tap[4] = triple.held_second[k];
+    }
   for (std::vector<double>* state :
        {&x1_, &x2_, &y1_, &y2_, &value_, &first_, &second_, &held_first_, &held_second_})
     state->resize(axes_);
@@ -61,26 +77,13 @@ void DriftControlledIntegrator::push_axis(std::size_t axis, double accel) {
   ring[newest_] = ring[newest_ + length_] = y;
   filled_[axis] = std::min(filled_[axis] + 1, static_cast<int>(length_));
 
-  const DerivativeTriple& triple = triples_[axis];
-  const double* recent = ring + newest_;
-  double p0 = 0, p1 = 0, p2 = 0;
-  for (std::size_t k = 0; k < length_; ++k) {
-    p0 += triple.value[k] * recent[k];
-    p1 += triple.first[k] * recent[k];
-    p2 += triple.second[k] * recent[k];
-  }
   const bool ready = filled_[axis] >= static_cast<int>(length_);
-  value_[axis] = ready ? p0 : 0;
-  first_[axis] = ready ? p1 : 0;
-  second_[axis] = ready ? p2 : 0;
-  if (triple.held_second.empty()) return;
-  double h1 = 0, h2 = 0;
-  for (std::size_t k = 0; k < length_; ++k) {
-    h1 += triple.held_first[k] * recent[k];
-    h2 += triple.held_second[k] * recent[k];
-  }
-  held_first_[axis] = ready ? h1 : 0;
-  held_second_[axis] = ready ? h2 : 0;
+  std::array<double, padded(kMostOutputs)> out{};
+  if (ready)
+    kernels::in_use->apply_taps(&taps_[axis * length_ * static_cast<std::size_t>(outputs_)],
+                                ring + newest_, static_cast<int>(length_), outputs_, out.data());
+  value_[axis] = out[0], first_[axis] = out[1], second_[axis] = out[2];
+  held_first_[axis] = out[3], held_second_[axis] = out[4];
 }
 
 }  // namespace framewatch::estimator

@@ -54,10 +54,11 @@ class DriftControlledIntegrator {
   static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
   void push_axis(std::size_t axis, double accel);
 
-  std::vector<DerivativeTriple> triples_;
   HighPass high_pass_;
   std::size_t axes_;
   std::size_t length_;
+  int outputs_;               ///< 3 or 5, padded to whole lanes
+  std::vector<double> taps_;  ///< axes x length x outputs
   std::size_t newest_ = 0;
   std::vector<double> x1_, x2_, y1_, y2_;
   std::vector<int> filled_;   ///< samples since the axis (re)started, saturating

@@ -15,38 +15,44 @@ class Pulled {
   /// Computes the next item at every step.
   class Iterator {
    public:
-    /// Computes the first item of `source`.
-    explicit Iterator(Source& source) : source_(source), item_(source.next()) {}
+    /// Computes the first item of `items`.
+    explicit Iterator(Pulled& items) : items_(items), item_(items.next()) {}
     /// Returns the current item, valid until the next step.
     const Item& operator*() const { return *item_; }
     /// Computes the next item.
     Iterator& operator++() {
-      item_ = source_.next();
+      item_ = items_.next();
       return *this;
     }
     /// Returns true after the last item.
     bool operator==(std::default_sentinel_t) const { return item_ == nullptr; }
 
    private:
-    Source& source_;
+    Pulled& items_;
     const Item* item_;
   };
 
   /// Keeps a reference to `source`, which must outlive this.
   explicit Pulled(Source& source) : source_(source) {}
   ~Pulled() {
-    while (source_.next() != nullptr) {
-    }
+    while (!ended_) next();
   }
   Pulled(const Pulled&) = delete;
   Pulled& operator=(const Pulled&) = delete;
   /// Computes the first item. Call it once.
-  Iterator begin() { return Iterator(source_); }
+  Iterator begin() { return Iterator(*this); }
   /// Returns the end of the loop.
   std::default_sentinel_t end() const { return {}; }
 
  private:
+  const Item* next() {
+    const Item* const item = source_.next();
+    ended_ = item == nullptr;
+    return item;
+  }
+
   Source& source_;
+  bool ended_ = false;
 };
 
 }  // namespace framewatch::estimator

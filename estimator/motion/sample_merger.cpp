@@ -12,11 +12,14 @@ namespace {
 constexpr double kOffGrid = 0.3;     // steps from an instant beyond which a sample is rejected
 constexpr double kPhaseGain = 0.02;  // rate at which the grid follows the stamps
 constexpr std::int64_t kBeyondLateness = 8;  // further instants that may be open
+constexpr double kSurelyRounded = 1e9;  // steps below which two ways to round agree within kNear
+constexpr double kNear = 0.49;  // steps from an instant: half a step, less what rounding may err
 
 }  // namespace
 
 SampleMerger::SampleMerger(int axes, double rate_hz, double lateness_s)
     : step_us_(1e6 / rate_hz),
+      steps_per_us_(1 / step_us_),
       lateness_(std::max<std::int64_t>(1, std::llround(lateness_s * rate_hz))),
       stray_limit_(2 * axes + 4) {
   const auto count = static_cast<std::size_t>(axes);
@@ -38,6 +41,13 @@ void SampleMerger::clear(Instant& instant) {
 }
 
 std::int64_t SampleMerger::index_of(double time_us) const {
+  // Most samples lie near an instant, and a product finds it sooner than a quotient that is
+  // rounded.
+  const double about = (time_us - phase_us_) * steps_per_us_;
+  if (std::abs(about) < kSurelyRounded) {
+    const auto near = static_cast<std::int64_t>(about + (about < 0 ? -0.5 : 0.5));
+    if (std::abs(about - static_cast<double>(near)) < kNear) return origin_ + near;
+  }
   const double steps = std::clamp((time_us - phase_us_) / step_us_, -9e15, 9e15);
   return origin_ + std::llround(steps);
 }

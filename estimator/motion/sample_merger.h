@@ -65,7 +65,7 @@ class SampleMerger {
   void set_silent(std::size_t axis, bool silent);
   void clear(Instant& instant);
 
-  double step_us_;
+  double step_us_, steps_per_us_;
   std::int64_t lateness_;  ///< in instants
   int stray_limit_;
   std::vector<Instant> open_;

@@ -34,6 +34,11 @@ inline constexpr int kGuidePadding = 8;
 inline constexpr int kBins = 8;
 
 struct Table {
+  /// Computes `outputs` responses of finite length to one signal: out_o = sum_k taps_ko recent_k.
+  /// taps: length x outputs. outputs: a multiple of a lane.
+  void (*apply_taps)(const double* taps, const double* recent, int length, int outputs,
+                     double* out);
+
   /// Advances a floor's row filters by one step. For each row: s = gain x - a1 s1 - a2 s2; s2 = s1;
   /// s1 = s; h = beta s. All rows share x, except that entry `at` is the row's response. x has
   /// `stride` values; response, gain, a1 and a2 have `rows`; the others have rows x stride.

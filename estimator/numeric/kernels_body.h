@@ -257,11 +257,10 @@ void add_two(double a, const double* x, double b, const double* y, double* out, 
   });
 }
 
-constexpr Table kTable = {filter_rows,      add_rows,         add,
-                          sum_into_front,   partial_cholesky, substitute_back,
-                          forward_columns,  backward_columns, multiply_add,
-                          add_two,          subtract_product, replace_sorted,
-                          noise_covariance, inverse_cholesky};
+constexpr Table kTable = {apply_taps,       filter_rows,      add_rows,        add,
+                          sum_into_front,   partial_cholesky, substitute_back, forward_columns,
+                          backward_columns, multiply_add,     add_two,         subtract_product,
+                          replace_sorted,   noise_covariance, inverse_cholesky};
 
 }  // namespace
 }  // namespace framewatch::estimator::kernels

@@ -153,6 +153,18 @@ void substitute_back(const double* factor, int stride, int own, int next, double
   if (p == 1) substitute<1>(factor, stride, 0, x);
 }
 
+void apply_taps(const double* taps, const double* recent, int length, int outputs, double* out) {
+  for_lanes(0, outputs, [&](auto of, int o) FRAMEWATCH_INLINE {
+    using Vector = decltype(of);
+    typename Vector::Type sum{}, tap;
+    for (int k = 0; k < length; ++k) {
+      load<Vector>(tap, taps + k * outputs + o);
+      sum += tap * recent[k];
+    }
+    store<Vector>(out + o, sum);
+  });
+}
+
 void filter_rows(const double* x, const double* response, int at, const double* gain,
                  const double* a1, const double* a2, double* s1, double* s2, const double* beta,
                  double* h, int rows, int stride) {

@@ -291,6 +291,14 @@ std::vector<double> all_results(const kernels::Table& table) {
     table.filter_rows(input.data(), beta.data(), front - 1, some, some, some, s1.data(), s2.data(),
                       beta.data(), filtered.data(), 2, stride);
     keep(s1), keep(s2), keep(filtered);
+    constexpr int kTaps = 15;
+    for (const int outputs : {kLane, 2 * kLane}) {
+      const auto taps = random_values(static_cast<std::size_t>(kTaps * outputs), 42);
+      std::vector<double> responses(static_cast<std::size_t>(outputs));
+      table.apply_taps(taps.data(), random_values(kTaps, 43).data(), kTaps, outputs,
+                       responses.data());
+      keep(responses);
+    }
     auto added = a;
     table.add(added.data(), b.data(), static_cast<long>(added.size()));
     keep(added);
