@@ -17,6 +17,7 @@ namespace {
 void place_all_files(Config& config) {
   const std::string beside = drivers::folder_of_paths_in(config.path);
   place_files("commands", beside, config.commands);
+  if (config.mqtt) place_files("mqtt", beside, *config.mqtt);
   if (config.watch) place_files("watch", beside, *config.watch);
   if (config.gap) place_files("gap", beside, *config.gap);
   if (config.history) place_files("history", beside, *config.history);

@@ -65,6 +65,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.commands = read_commands(document, problems);
   config.weather = read_weather_tables(document, config, problems);
   read_can(document, config, problems);
+  config.mqtt = read_mqtt(document, config, problems);
   config.watch = read_watch(document, problems);
   add_thermometer(config);
   if (config.watch) config.pipeline.options.long_window_s = config.watch->options.quiet_window_s;

@@ -123,8 +123,12 @@ const SectionDescription kSections[] = {
      "([years](years.md)). The value is scale * raw - offset. The thermometer of [watch] counts as "
      "`temperature_degc` without a table.",
      Reach::restart},
-    {"weather.source", "source = { lcm, thermometer or can ... }",
+    {"weather.source", "source = { lcm, thermometer, can or mqtt ... }",
      "Where the readings of a covariate come from.", Reach::restart},
+    {"mqtt", "[mqtt]",
+     "Optional: the MQTT broker of covariates with a topic ([MQTT](years.md#mqtt)). framewatch "
+     "subscribes to these topics and publishes nothing.",
+     Reach::restart},
     {"watch", "[watch]", "Optional: detect lasting stiffness changes and publish them as events.",
      Reach::settings},
     {"gap", "[gap]",

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "daemon/config/keys/option_table.h"
+#include "drivers/mqtt/mqtt_settings.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -64,6 +65,64 @@ const Option kWeatherSource[] = {
     {.key = "dbc_signal",
      .meaning = "Message.Signal of its DBC files. A frame counts at the time of the newest sample.",
      .target = into<&WeatherSettings::dbc_signal>},
+    {.key = "mqtt",
+     .meaning =
+         "Topic of the broker of [mqtt], without wildcards. A payload is a number, or JSON if "
+         "there is a field.",
+     .target = into<&WeatherSettings::mqtt>},
+    {.key = "field",
+     .meaning = "JSON pointer of the value in a payload of mqtt, such as `/temperature` or "
+                "`/sensors/0/value`.",
+     .target = into<&WeatherSettings::field>},
+    {.key = "time_field",
+     .meaning =
+         "JSON pointer of the time in a payload of mqtt: ISO 8601, or seconds or milliseconds "
+         "since 1970. Without it a reading counts at the time of the newest sample, and "
+         "retained messages are ignored.",
+     .target = into<&WeatherSettings::time_field>},
+};
+
+const Option kMqtt[] = {
+    {.key = "url",
+     .required = true,
+     .meaning = "Address of the broker: `mqtts://HOST[:PORT]` with TLS, or `mqtt://HOST[:PORT]`. "
+                "Ports by default: 8883, 1883.",
+     .target = into<&drivers::MqttSettings::url>},
+    {.key = "ca_file",
+     .meaning = "CA certificates (PEM) for the broker, instead of the system's. Files are read for "
+                "each connection.",
+     .is_path = true,
+     .target = into<&drivers::MqttSettings::ca_file>},
+    {.key = "certificate_file",
+     .meaning = "Certificate (PEM) by which the broker knows framewatch; belongs with key_file.",
+     .is_path = true,
+     .target = into<&drivers::MqttSettings::certificate_file>},
+    {.key = "key_file",
+     .meaning = "Private key (PEM) of certificate_file, without a passphrase.",
+     .is_path = true,
+     .target = into<&drivers::MqttSettings::key_file>},
+    {.key = "user",
+     .meaning = "User name at the broker.",
+     .target = into<&drivers::MqttSettings::user>},
+    {.key = "password_file",
+     .meaning = "File whose first line is the password of user.",
+     .is_path = true,
+     .target = into<&drivers::MqttSettings::password_file>},
+    {.key = "client_id",
+     .meaning =
+         "Name of this connection; must differ between all clients of the broker. Default: a "
+         "random one.",
+     .target = into<&drivers::MqttSettings::client_id>},
+    {.key = "keepalive_s",
+     .unit = "s",
+     .range = {5, 3600},
+     .meaning = "After this time without a message the broker must show that it is there.",
+     .target = into<&drivers::MqttSettings::keepalive_s>},
+    {.key = "queue_capacity",
+     .unit = "messages",
+     .range = {1, 100000},
+     .meaning = "Messages that may wait; further ones are dropped and counted.",
+     .target = into<&drivers::MqttSettings::queue_capacity>},
 };
 
 }  // namespace
@@ -85,7 +144,8 @@ std::string covariate_endings() {
 
 std::vector<OptionSection> weather_options() {
   return {{"weather", kWeather, Reach::restart},
-          {"weather.source", kWeatherSource, Reach::restart}};
+          {"weather.source", kWeatherSource, Reach::restart},
+          {"mqtt", kMqtt, Reach::restart}};
 }
 
 }  // namespace framewatch::daemon

@@ -29,6 +29,9 @@ struct WeatherSettings {
   std::string lcm_channel = "WEATHER";  ///< of weather_t messages
   std::string thermometer = {};         ///< LCM channel of temperature_t messages; empty: none
   std::string can = {}, dbc_signal = {};
+  std::string mqtt = {};   ///< topic; empty: none
+  std::string field = {};  ///< JSON pointer of the value in a payload; empty: the whole payload
+  std::string time_field = {};   ///< JSON pointer of the time; empty: none
   double scale = 1, offset = 0;  ///< value = scale * raw - offset
   double away_after_s = 21600;
   double stuck_after_s = 0;  ///< 0: never

@@ -52,6 +52,10 @@ std::optional<WatchSettings> read_watch(const TomlValue& document,
 /// Reads every [[weather]]. `config` has the sources of channels.
 std::vector<WeatherSettings> read_weather_tables(const TomlValue& document, const Config& config,
                                                  std::vector<TextProblem>& problems);
+/// Reads [mqtt]. `config` has the covariates; adds a doubt to config.doubts if a password would
+/// cross the network unencrypted.
+std::optional<drivers::MqttSettings> read_mqtt(const TomlValue& document, Config& config,
+                                               std::vector<TextProblem>& problems);
 /// Adds the covariate temperature_degc for the thermometer of [watch] unless [[weather]] names it.
 void add_thermometer(Config& config);
 std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems);

@@ -16,6 +16,7 @@
 #include "daemon/config/keys/weather_options.h"
 #include "daemon/config/sections/config_problems.h"
 #include "drivers/can/can_map.h"
+#include "drivers/mqtt/mqtt_settings.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/structure/effect.h"
 
@@ -40,6 +41,7 @@ struct Config {
   CommandSettings commands;
   drivers::CanMap can;                              ///< axes as in pipeline.axes
   std::vector<WeatherSettings> weather;             ///< with the thermometer of [watch]
+  std::optional<drivers::MqttSettings> mqtt;        ///< without it no covariate has a topic
   std::optional<WatchSettings> watch;               ///< without it nothing is watched
   std::optional<GapSettings> gap;                   ///< without it nothing is simulated
   std::optional<HistorySettings> history;           ///< without it nothing is kept

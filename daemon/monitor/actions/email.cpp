@@ -16,6 +16,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
+#include "daemon/base/secret_file.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/actions/curl_session.h"
 #include "daemon/monitor/actions/webhook_body.h"

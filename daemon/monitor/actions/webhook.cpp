@@ -11,6 +11,7 @@
 
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
+#include "daemon/base/secret_file.h"
 #include "daemon/monitor/actions/curl_session.h"
 #include "daemon/monitor/actions/webhook_body.h"
 

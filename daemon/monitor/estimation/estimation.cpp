@@ -96,8 +96,9 @@ Estimation::Estimation(const Config& config, MessageSink sink, EstimationListene
       weather_(config) {
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
-  can_.on_value(
-      [this](std::size_t covariate, double value, std::int64_t) { can_value(covariate, value); });
+  can_.on_value([this](std::size_t covariate, double value, std::int64_t) {
+    weather_value(covariate, value);
+  });
   begin_watch();
   begin_gap();
   if (!config.event_report) return;
@@ -263,8 +264,9 @@ drivers::IntakeResult Estimation::weather(const std::string& channel,
   return drivers::IntakeResult::table;
 }
 
-void Estimation::can_value(std::size_t covariate, double value) {
-  const weather_t reading = weather_.can_value(covariate, value, seconds_.newest_us());
+void Estimation::weather_value(std::size_t covariate, double value,
+                               std::optional<std::int64_t> time_us) {
+  const weather_t reading = weather_.value(covariate, value, time_us, seconds_.newest_us());
   if (!reading.name.empty())
     listener_->on_weather(config_.weather[covariate].lcm_channel, reading.time_us,
                           drivers::encoded(reading));

@@ -114,6 +114,11 @@ class Estimation {
   void frame(int bus, const drivers::CanFrame& frame);
   /// Takes a state of a CAN bus that no frame reports.
   void notice(const drivers::CanNotice& notice);
+  /// Takes a value of weather that no message names, in raw units. `covariate`: index in the
+  /// configuration. time_us: sensor time; absent: that of the newest sample. Ignored before the
+  /// first sample.
+  void weather_value(std::size_t covariate, double value,
+                     std::optional<std::int64_t> time_us = std::nullopt);
   /// Takes one value from a file that has channel names instead of messages.
   void sample(const estimator::AccelSample& sample);
   /// Ends the input: closes open instants and publishes the last table and status.
@@ -169,7 +174,6 @@ class Estimation {
   drivers::IntakeResult temperature(const std::string& channel,
                                     std::span<const std::uint8_t> bytes);
   drivers::IntakeResult weather(const std::string& channel, std::span<const std::uint8_t> bytes);
-  void can_value(std::size_t covariate, double value);
   void take(estimator::Pipeline::Results&& results);
   bool speaks_of_building() const;
   void watch(const estimator::WindowEstimate& estimate);

@@ -64,14 +64,16 @@ void WeatherIntake::thermometer(const std::string& channel, std::int64_t time_us
     if (config_.weather[c].thermometer == channel) take(c, time_us, degc, now_us);
 }
 
-weather_t WeatherIntake::can_value(std::size_t covariate, double value, std::int64_t now_us) {
+weather_t WeatherIntake::value(std::size_t covariate, double value,
+                               std::optional<std::int64_t> time_us, std::int64_t now_us) {
   weather_t out{};
   if (covariate >= guards_.size() || now_us == 0) return out;
   const std::int64_t before_us = guards_[covariate].heard_us();
-  if (before_us != 0 && now_us >= before_us && now_us < before_us + CovariateGuard::kLeast_us)
+  if (!time_us && before_us != 0 && now_us >= before_us &&
+      now_us < before_us + CovariateGuard::kLeast_us)
     return out;
-  take(covariate, now_us, value, now_us);
-  out.time_us = now_us;
+  out.time_us = time_us.value_or(now_us);
+  take(covariate, out.time_us, value, now_us);
   out.name = config_.weather[covariate].name;
   out.value = value;
   return out;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,12 @@ class WeatherIntake {
   bool take(const std::string& channel, const weather_t& reading, std::int64_t now_us);
   void thermometer(const std::string& channel, std::int64_t time_us, double degc,
                    std::int64_t now_us);
-  /// Takes a value of a CAN signal, which counts at now_us. Returns the reading as a message for
-  /// records, in raw units. Its name is empty if another one was taken less than a second ago.
-  weather_t can_value(std::size_t covariate, double value, std::int64_t now_us);
+  /// Takes a value without a name, of a CAN signal or an MQTT topic, in raw units. time_us: sensor
+  /// time; absent: now_us. Returns the reading as a message for records, in raw units. Its name is
+  /// empty if it was not taken: there was no sample yet, or, without a time, another one came less
+  /// than a second ago.
+  weather_t value(std::size_t covariate, double value, std::optional<std::int64_t> time_us,
+                  std::int64_t now_us);
 
   /// Returns what has become known since the last call. Call it once a second.
   std::vector<event_t> update(std::int64_t now_us);

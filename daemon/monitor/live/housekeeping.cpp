@@ -136,6 +136,7 @@ void Housekeeping::update(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& m
     lcm.publish(config_.lcm.prefix + "SERVICE", &report);
     const reception_t reception = reception_report(live, now_us);
     lcm.publish(config_.lcm.prefix + "RECEPTION", &reception);
+    if (const auto mqtt = live.mqtt(now_us)) lcm.publish(config_.lcm.prefix + "MQTT", &*mqtt);
     manager.status(status_line(live, config_, now_us));
   }
   const std::int64_t steady_us = steady_clock_us();

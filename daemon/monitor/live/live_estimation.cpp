@@ -51,6 +51,11 @@ void LiveEstimation::reconfigure(Config next, Reach reach) {
   estimation_->take_over(*before, reach == Reach::settings);
 }
 
+void LiveEstimation::connect_mqtt() {
+  if (config_->mqtt && !mqtt_topics(*config_).empty())
+    mqtt_ = std::make_unique<MqttIntake>(*config_);
+}
+
 void LiveEstimation::catch_up(RawBacklog backlog) {
   backlog_ = std::move(backlog);
   if (backlog_.empty()) estimation_->came_up(backlog_.read_whole());
@@ -130,6 +135,7 @@ bool LiveEstimation::poll(int timeout_ms) {
     estimation_->notice(
         {drivers::CanNotice::Kind::interface_gone, static_cast<int>(b), !gone, 0, host_clock_us()});
   }
+  if (mqtt_ != nullptr && !catching_up()) mqtt_->poll(*estimation_, host_clock_us());
   const std::int64_t dropped = intake_.lcm().dropped().queue_full;
   state_.queue_dropped += dropped - std::exchange(lcm_dropped_, dropped);
   state_.queue_high_water = static_cast<std::int32_t>(intake_.lcm().backlog_high_water());

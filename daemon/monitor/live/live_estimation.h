@@ -20,6 +20,7 @@
 #include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/monitor/history/history.h"
 #include "daemon/monitor/live/live_intake.h"
+#include "daemon/monitor/live/mqtt_intake.h"
 #include "daemon/monitor/live/raw_backlog.h"
 #include "drivers/can/can_log.h"
 
@@ -82,6 +83,9 @@ class LiveEstimation : public EstimationListener {
   /// Opens the configured buses. Returns one line for each problem.
   std::vector<std::string> open_buses() { return intake_.open_buses(); }
 
+  /// Begins to receive from the broker of [mqtt], if there is one.
+  void connect_mqtt();
+
   /// Waits for messages at most `timeout_ms` and handles all that have come. Returns false when LCM
   /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
   [[nodiscard]] bool poll(int timeout_ms);
@@ -112,6 +116,11 @@ class LiveEstimation : public EstimationListener {
   /// Returns the counters of messages that the LCM receiver dropped.
   drivers::ReceiverCounters dropped() const { return intake_.lcm().dropped(); }
   drivers::CanSource& can() { return intake_.can(); }
+  /// Returns the state of the connection to the broker of [mqtt]; nullopt without one. `now_us`:
+  /// host clock.
+  std::optional<mqtt_status_t> mqtt(std::int64_t now_us) const {
+    return mqtt_ == nullptr ? std::nullopt : std::optional(mqtt_->status(now_us));
+  }
 
  private:
   /// A message or frame that came during catch_up().
@@ -157,6 +166,7 @@ class LiveEstimation : public EstimationListener {
   std::vector<std::vector<std::uint8_t>> requests_;
   std::unique_ptr<Estimation> estimation_;
   LiveIntake intake_;
+  std::unique_ptr<MqttIntake> mqtt_;
 };
 
 }  // namespace framewatch::daemon

@@ -261,6 +261,7 @@ int run(const RunArguments& a) {
   LiveEvents events(*config, a.url, *lcm, live, history);
   live.catch_up(std::move(missed));
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
+  live.connect_mqtt();
   Housekeeping housekeeping(*config, text, a.state, a.state_every_s, starts, resumed);
   if (!a.quiet)
     log(LogLevel::info,

@@ -176,14 +176,25 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
                                 kStates[std::clamp(can.state[b], -1, 3) + 1]));
 }
 
+void of_mqtt(const mqtt_status_t& s, std::vector<std::string>& out) {
+  if (s.trouble.empty()) return;
+  const std::string span = span_text(seconds_between(s.since_us, s.time_us));
+  if (s.connected != 0)
+    out.push_back(fmt::format("{}: {}. Its readings are missing: check the broker's access rules",
+                              s.broker, s.trouble));
+  else
+    out.push_back(fmt::format("no connection to {} for {}: {}. Its readings are missing", s.broker,
+                              span, s.trouble));
+}
+
 }  // namespace
 
 std::vector<std::string> Heard::channels() const {
   return LatestMessages::channels(
       {DaemonMessage::service, DaemonMessage::status, DaemonMessage::estimate, DaemonMessage::gap,
-       DaemonMessage::watch, DaemonMessage::weather, DaemonMessage::can, DaemonMessage::history,
-       DaemonMessage::actions, DaemonMessage::acknowledged, DaemonMessage::reception,
-       DaemonMessage::uplink});
+       DaemonMessage::watch, DaemonMessage::weather, DaemonMessage::can, DaemonMessage::mqtt,
+       DaemonMessage::history, DaemonMessage::actions, DaemonMessage::acknowledged,
+       DaemonMessage::reception, DaemonMessage::uplink});
 }
 
 void Heard::message(const std::string& channel, const void* data, std::size_t size) {
@@ -251,6 +262,7 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   of_samples(heard, now_us, out);
   of_punctuality(heard, out);
   if (heard.can) of_can(*heard.can, out);
+  if (heard.mqtt) of_mqtt(*heard.mqtt, out);
   if (heard.watch) of_watch(*heard.watch, config, out);
   if (heard.history) of_history(*heard.history, s, out);
   if (heard.actions) of_actions(*heard.actions, out);

@@ -39,6 +39,7 @@ const MessageChannel kMessageChannels[] = {
     entry_of<watch_t, &LatestMessages::watch>("WATCH"),
     entry_of<weather_status_t, &LatestMessages::weather>("WEATHER"),
     entry_of<can_status_t, &LatestMessages::can>("CAN"),
+    entry_of<mqtt_status_t, &LatestMessages::mqtt>("MQTT"),
     entry_of<history_status_t, &LatestMessages::history>("HISTORY"),
     entry_of<action_status_t, &LatestMessages::actions>("ACTIONS"),
     entry_of<acknowledged_t, &LatestMessages::acknowledged>("ACKNOWLEDGED"),

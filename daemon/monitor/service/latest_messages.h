@@ -16,6 +16,7 @@
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/model_fit_t.hpp>
+#include <framewatch/mqtt_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
@@ -39,6 +40,7 @@ enum class DaemonMessage {
   watch,
   weather,
   can,
+  mqtt,
   history,
   actions,
   acknowledged,
@@ -76,6 +78,7 @@ class LatestMessages {
   std::optional<watch_t> watch;
   std::optional<weather_status_t> weather;
   std::optional<can_status_t> can;
+  std::optional<mqtt_status_t> mqtt;
   std::optional<history_status_t> history;
   std::optional<action_status_t> actions;
   std::optional<acknowledged_t> acknowledged;

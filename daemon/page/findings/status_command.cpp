@@ -51,6 +51,13 @@ std::optional<DiskOutlook> disk_outlook(const Config& config, std::int64_t now_u
   return DiskOutlook{days, disk_sentence(days, now_us)};
 }
 
+nlohmann::json mqtt_json(const mqtt_status_t& s) {
+  return {{"broker", s.broker},         {"connected", s.connected != 0},
+          {"trouble", s.trouble},       {"messages", s.messages},
+          {"dropped", s.dropped},       {"retained", s.retained},
+          {"unreadable", s.unreadable}, {"unread", s.unread}};
+}
+
 /// Returns the output of `framewatch status --json`. odd: the problems found. Requires
 /// heard.service. now_us: host clock.
 std::string status_json(const Heard& h, const Config& config,
@@ -114,6 +121,7 @@ std::string status_json(const Heard& h, const Config& config,
                       {"sub", unit->sub},
                       {"result", unit->result},
                       {"restarts", unit->restarts}};
+  if (h.mqtt) out["mqtt"] = mqtt_json(*h.mqtt);
   out["events"] = nlohmann::json::array();
   for (std::size_t i = 0; i < s.event_id.size(); ++i) {
     const auto at = acknowledgement_of(h.acknowledged, s.event_id[i]);
@@ -322,6 +330,20 @@ void print_can(const Heard& h) {
                                   h.can->frames_hz[b], 100 * h.can->load[b]));
 }
 
+void print_mqtt(const Heard& h) {
+  if (!h.mqtt) return;
+  const mqtt_status_t& s = *h.mqtt;
+  std::string text = fmt::format("{}: {}, {} messages", s.broker,
+                                 s.connected != 0    ? "connected"
+                                 : s.trouble.empty() ? "connecting"
+                                                     : "no connection",
+                                 s.messages);
+  if (s.dropped > 0) text += fmt::format(", {} dropped by a full queue", s.dropped);
+  if (s.retained > 0) text += fmt::format(", {} retained without a time, ignored", s.retained);
+  if (s.unreadable > 0) text += fmt::format(", {} unreadable: {}", s.unreadable, s.unread);
+  line("mqtt", text);
+}
+
 void print_text(const Heard& h, const Config& config, const std::optional<DiskOutlook>& disk,
                 const std::vector<std::string>& odd, const std::optional<UnitState>& unit,
                 std::int64_t now_us) {
@@ -338,6 +360,7 @@ void print_text(const Heard& h, const Config& config, const std::optional<DiskOu
   print_watch(h);
   print_weather(h);
   print_can(h);
+  print_mqtt(h);
   print_history(h, disk);
   print_actions(h);
   print_hub(h, now_us);

@@ -251,6 +251,19 @@ void add_can(MetricFamilies& out, const can_status_t& s) {
       .value(s.dropped);
 }
 
+void add_mqtt(MetricFamilies& out, const mqtt_status_t& s) {
+  out.gauge("mqtt_connected", "1: connected to the broker of [mqtt].").value(s.connected);
+  out.gauge("mqtt_trouble", "1: not connected, or the broker refuses a topic.")
+      .value(s.trouble.empty() ? 0 : 1);
+  out.counter("mqtt_connections_total", "Connections that the broker accepted.")
+      .value(s.connections);
+  out.counter("mqtt_messages_total", "Messages received from the broker.").value(s.messages);
+  out.counter("mqtt_messages_unused_total", "Messages that gave no reading, by reason.")
+      .value(s.dropped, {{"reason", "queue_full"}})
+      .value(s.retained, {{"reason", "retained"}})
+      .value(s.unreadable, {{"reason", "unreadable"}});
+}
+
 void add_uplink(MetricFamilies& out, const uplink_status_t& s) {
   out.gauge("uplink_connected", "1: connected to a hub.").value(s.connected);
   out.gauge("uplink_acknowledged_timestamp_seconds",

@@ -16,6 +16,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
+#include <framewatch/mqtt_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
@@ -76,6 +77,7 @@ void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_
 void add_weather(MetricFamilies& out, const weather_status_t& weather);
 void add_gap(MetricFamilies& out, const gap_t& gap);
 void add_can(MetricFamilies& out, const can_status_t& can);
+void add_mqtt(MetricFamilies& out, const mqtt_status_t& mqtt);
 void add_history(MetricFamilies& out, const history_status_t& history);
 void add_actions(MetricFamilies& out, const action_status_t& actions);
 void add_reception(MetricFamilies& out, const reception_t& reception);

@@ -63,6 +63,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   if (fresh.weather) add_weather(out, *fresh.weather);
   if (fresh.gap) add_gap(out, *fresh.gap);
   if (fresh.can) add_can(out, *fresh.can);
+  if (fresh.mqtt) add_mqtt(out, *fresh.mqtt);
   if (fresh.history) add_history(out, *fresh.history);
   if (fresh.actions) add_actions(out, *fresh.actions);
   if (fresh.reception) add_reception(out, *fresh.reception);

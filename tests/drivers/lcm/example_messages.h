@@ -10,6 +10,7 @@
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/model_fit_t.hpp>
+#include <framewatch/mqtt_status_t.hpp>
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/session_command_t.hpp>
@@ -298,6 +299,22 @@ inline reception_t reception() {
   return m;
 }
 
+inline mqtt_status_t mqtt_status() {
+  mqtt_status_t m{};
+  m.time_us = 1;
+  m.broker = "mqtts://broker.example.org";
+  m.connected = 1;
+  m.since_us = 2;
+  m.trouble = "the broker refuses the topic roof";
+  m.connections = 3;
+  m.messages = 4;
+  m.dropped = 5;
+  m.retained = 6;
+  m.unreadable = 7;
+  m.unread = "roof: \"on\" is not a number";
+  return m;
+}
+
 /// Calls visit(LCM channel, message) for each message.
 template <typename Visit>
 void for_each(Visit visit) {
@@ -325,6 +342,7 @@ void for_each(Visit visit) {
   visit("FRAMEWATCH_UPLINK", uplink_status());
   visit("WEATHER", weather());
   visit("FRAMEWATCH_WEATHER", weather_status());
+  visit("FRAMEWATCH_MQTT", mqtt_status());
 }
 
 }  // namespace framewatch::drivers::examples

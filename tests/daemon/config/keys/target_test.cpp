@@ -19,6 +19,7 @@
 #include "daemon/config/keys/watch_options.h"
 #include "daemon/config/keys/weather_options.h"
 #include "drivers/can/can_map.h"
+#include "drivers/mqtt/mqtt_settings.h"
 #include "estimator/setup/pipeline_config.h"
 #include "estimator/structure/sensors.h"
 #include "tests/support/key_values.h"
@@ -100,6 +101,7 @@ TEST(KeyTargets, EveryKeyReachesItsFieldAndNoOther) {
   round_trip<CanNodeSettings>("can_node", keys);
   round_trip<WeatherSettings>("weather", keys);
   round_trip<WeatherSettings>("weather.source", keys);
+  round_trip<drivers::MqttSettings>("mqtt", keys);
   round_trip<WatchSettings>("watch", keys);
   round_trip<GapSettings>("gap", keys);
   round_trip<HistorySettings>("history", keys);

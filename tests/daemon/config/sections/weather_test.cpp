@@ -129,5 +129,72 @@ TEST(ConfigWeather, WarnsOfKelvinInADbcFile) {
     EXPECT_EQ(doubt.message.find("273.15"), std::string::npos) << doubt.message;
 }
 
+const std::string kRoof = "[[weather]]\nname = \"roof_degc\"\nsource = { mqtt = \"roof/t\" }\n";
+
+TEST(ConfigWeather, ReadsTopicsOfABroker) {
+  std::string problems;
+  const auto config = config_of(R"(
+[mqtt]
+url = "mqtts://broker.example.org"
+user = "framewatch"
+password_file = "secret"
+ca_file = "/etc/ca.pem"
+[[weather]]
+name = "roof_degc"
+source = { mqtt = "roof/t", field = "/value", time_field = "/time" }
+)",
+                                problems);
+  ASSERT_TRUE(config) << problems;
+  EXPECT_EQ(config->weather[0].mqtt, "roof/t");
+  EXPECT_EQ(config->weather[0].field, "/value");
+  EXPECT_EQ(config->weather[0].time_field, "/time");
+  ASSERT_TRUE(config->mqtt);
+  EXPECT_EQ(config->mqtt->url, "mqtts://broker.example.org");
+  EXPECT_TRUE(config->mqtt->password_file.ends_with("/secret"));
+  EXPECT_EQ(config->mqtt->ca_file, "/etc/ca.pem");
+  EXPECT_TRUE(config->doubts.empty() ||
+              config->doubts[0].message.find("mqtt") == std::string::npos);
+}
+
+TEST(ConfigWeather, DoubtsAPasswordThatCrossesTheNetworkInTheClear) {
+  const auto doubts = [](const std::string& host) {
+    std::string problems, out;
+    const auto config = config_of("[mqtt]\nurl = \"mqtt://" + host +
+                                      "\"\nuser = \"me\"\npassword_file = \"secret\"\n" + kRoof,
+                                  problems);
+    EXPECT_TRUE(config) << problems;
+    for (const ConfigProblem& d : config->doubts) out += d.message;
+    return out.find("the password crosses the network to " + host) != std::string::npos;
+  };
+  EXPECT_TRUE(doubts("broker.lan"));
+  EXPECT_FALSE(doubts("localhost"));
+}
+
+TEST(ConfigWeather, RefusesABrokerAndTopicsThatCannotWork) {
+  const auto has = [](const std::string& more, const std::string& problem) {
+    const std::string all = problems_of(more);
+    EXPECT_NE(all.find(problem), std::string::npos) << more << "\n" << all;
+  };
+  const std::string broker = "[mqtt]\nurl = \"mqtt://b\"\n";
+  const auto source = [&](const std::string& keys) {
+    return broker + "[[weather]]\nname = \"roof_degc\"\nsource = { " + keys + " }\n";
+  };
+  has(kRoof, "needs a section [mqtt]");
+  has("[mqtt]\nurl = \"http://b\"\n", "mqtt.url: \"http://b\": must be such as");
+  has("[mqtt]\nuser = \"a\"\n", "mqtt.url");
+  has(broker + "ca_file = \"x\"\n", "needs TLS");
+  has(broker + "password_file = \"x\"\n", "needs user");
+  has("[mqtt]\nurl = \"mqtts://b\"\nkey_file = \"x\"\n", "needs certificate_file");
+  has("[mqtt]\nurl = \"mqtts://b\"\ncertificate_file = \"x\"\n", "needs key_file");
+  has(source("mqtt = \"roof/+/t\""), "must be one topic");
+  has(source("mqtt = \"roof/#\""), "must be one topic");
+  has(source("mqtt = \"\""), "a topic has 1 to");
+  has(source("mqtt = \"t\", field = \"v\""), "must be a JSON pointer");
+  has(source("mqtt = \"t\", field = \"/a~2\""), "must be a JSON pointer");
+  has(source("field = \"/v\""), "needs mqtt");
+  has(source("mqtt = \"t\", time_field = \"/v\""), "needs field");
+  has(source("mqtt = \"t\", thermometer = \"T\""), "a covariate has one source");
+}
+
 }  // namespace weather_test
 }  // namespace framewatch::daemon

@@ -74,6 +74,26 @@ TEST(Health, ReportsNoProblemOfAHealthyDaemon) {
   EXPECT_EQ(odd(well(config), config), "0 oddities");
 }
 
+TEST(Health, NamesABrokerThatIsAwayOrRefusesATopic) {
+  const Config config{};
+  Heard heard = well(config);
+  heard.mqtt.emplace();
+  heard.mqtt->broker = "mqtt://b";
+  EXPECT_EQ(odd(heard, config), "0 oddities");  // it is still connecting
+  heard.mqtt->trouble = "Connection refused";
+  heard.mqtt->time_us = kNow_us;
+  heard.mqtt->since_us = kNow_us - 300 * kSecond_us;
+  EXPECT_EQ(
+      odd(heard, config),
+      "no connection to mqtt://b for 5 min 0 s: Connection refused. Its readings are missing");
+  heard.mqtt->connected = 1;
+  heard.mqtt->trouble = "the broker refuses the topic t";
+  EXPECT_EQ(
+      odd(heard, config),
+      "mqtt://b: the broker refuses the topic t. Its readings are missing: check the broker's "
+      "access rules");
+}
+
 TEST(Health, ReportsASilentThermometer) {
   Config config{};
   config.watch.emplace();

@@ -11,6 +11,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
+#include <framewatch/mqtt_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
@@ -85,6 +86,28 @@ TEST(Metrics, AreUpOnlyWhileTheDaemonIsHeard) {
   const std::string down = metrics.text(10 * kSecond_us + Metrics::kFresh_us + 1, {});
   expect_line(down, "framewatch_up 0");
   EXPECT_EQ(down.find("framewatch_starts_total"), std::string::npos);
+}
+
+TEST(Metrics, TellABrokerThatIsAway) {
+  const Config config{};
+  Metrics metrics(config);
+  give(metrics, "FRAMEWATCH_SERVICE", service(), 0);
+  EXPECT_EQ(metrics.text(0, {}).find("mqtt"), std::string::npos);
+  mqtt_status_t m{};
+  m.connected = 0;
+  m.trouble = "Connection refused";
+  m.messages = 4;
+  m.dropped = 5;
+  m.retained = 6;
+  m.unreadable = 7;
+  give(metrics, "FRAMEWATCH_MQTT", m, 0);
+  const std::string text = metrics.text(0, {});
+  expect_line(text, "framewatch_mqtt_connected 0");
+  expect_line(text, "framewatch_mqtt_trouble 1");
+  expect_line(text, "framewatch_mqtt_messages_total 4");
+  expect_line(text, "framewatch_mqtt_messages_unused_total{reason=\"queue_full\"} 5");
+  expect_line(text, "framewatch_mqtt_messages_unused_total{reason=\"retained\"} 6");
+  expect_line(text, "framewatch_mqtt_messages_unused_total{reason=\"unreadable\"} 7");
 }
 
 TEST(Metrics, AddUpHistogramsEscapeLabelsAndOmitMissingValues) {
