@@ -138,6 +138,11 @@ void LossEvidence::thin() {
     c.bets.erase(c.bets.begin() + static_cast<std::ptrdiff_t>(least));
 }
 
+Eigen::VectorXd LossEvidence::coefficients() const {
+  const auto& likeliest = *std::ranges::max_element(candidates_, {}, &Candidate::log_likelihood);
+  return likeliest.mean.head(likeliest.mean.size() - 1);
+}
+
 void LossEvidence::accept(double std_error) {
   for (Candidate& c : candidates_) {
     c.bets.clear();

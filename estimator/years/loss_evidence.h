@@ -40,6 +40,9 @@ class LossEvidence {
   };
   /// Returns the step of the bet with the largest capital.
   Step step() const { return step_; }
+  /// Returns what the regressors do to the value, by regressor; the first one is the level: the
+  /// coefficients of the likeliest candidate.
+  Eigen::VectorXd coefficients() const;
   /// Takes a step as known: clears all bets and keeps what was learned of the weather. The caller
   /// subtracts the step from later values. std_error: of its size.
   void accept(double std_error);

@@ -61,6 +61,19 @@ const LossEvidence& YearsWatch::series(int element) const {
                                                      : series_[static_cast<std::size_t>(element)];
 }
 
+Eigen::VectorXd YearsWatch::weather_effect(std::size_t element) const {
+  Eigen::VectorXd out = series_.back().coefficients();
+  // A series of one element is its difference from the mean of the others.
+  const auto n = static_cast<double>(elements_.size());
+  if (series_.size() > 1) out += (n - 1) / n * series_[element].coefficients();
+  out[0] = 0;
+  return out;
+}
+
+Eigen::VectorXd YearsWatch::regressors() const {
+  return std::isfinite(weather_.doubt()) ? weather_.regressors() : Eigen::VectorXd();
+}
+
 double YearsWatch::evidence(int element) const {
   return std::max(series(element).log_capital(), 0.0) / proof_;
 }

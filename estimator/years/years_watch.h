@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "estimator/years/life_budget.h"
 #include "estimator/years/loss_evidence.h"
 #include "estimator/years/weather_lags.h"
@@ -56,6 +58,13 @@ class YearsWatch {
   /// Returns the most likely loss, proven or not, of which evidence() speaks.
   LossEvidence::Step step(int element) const { return series(element).step(); }
   int days() const { return days_; }
+
+  /// Returns what weather does to the logarithm of an element's stiffness, by regressor(), as far
+  /// as the days so far tell. The first one, of the level, is 0.
+  Eigen::VectorXd weather_effect(std::size_t element) const;
+  /// Returns the weather of the newest day, as WeatherLags has it; empty before every covariate has
+  /// a value.
+  Eigen::VectorXd regressors() const;
 
  private:
   struct Element {

@@ -10,7 +10,7 @@ const {expect, start, pause, addressOf, run} = require('./common.js');
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
 const kViewers = 200, kSlow = 2000, kMaxCpu = 0.10, kMinFrames = 20, kQuietFrames = 50, kPlayed_s = 12;
-const kPageBytes = 160000;
+const kPageBytes = 185000;
 
 async function stop(child) { child.kill('SIGINT'); await child.ended; }
 const config = path.join(configs, 'paper_table2.toml'), scenario = path.join(configs, 'scenario_paper_table2.toml');

@@ -25,23 +25,6 @@ namespace {
 
 constexpr std::size_t kScreenRows = 30;
 
-/// Parses "90m", "2h", "3d", "45s" or "45". Returns microseconds, or nullopt if `text` is not a
-/// duration > 0.
-std::optional<std::int64_t> read_duration(const std::string& text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  const std::string unit(rest, end);
-  const double seconds = unit.empty() || unit == "s" ? 1
-                         : unit == "m"               ? 60
-                         : unit == "h"               ? 3600
-                         : unit == "d"               ? 86400
-                                                     : 0;
-  if (error != std::errc() || seconds == 0 || !(value > 0) || value * seconds > 1e10)
-    return std::nullopt;
-  return std::llround(1e6 * value * seconds);
-}
-
 /// Returns the rule that the name of an export breaks; empty if the name is valid.
 std::string problem_of_raw_name(const std::string& path) {
   if (path == drivers::kStandardOutput) return {};
@@ -183,6 +166,21 @@ class RequestReader {
 };
 
 }  // namespace
+
+std::optional<std::int64_t> read_duration(const std::string& text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  const std::string unit(rest, end);
+  const double seconds = unit.empty() || unit == "s" ? 1
+                         : unit == "m"               ? 60
+                         : unit == "h"               ? 3600
+                         : unit == "d"               ? 86400
+                                                     : 0;
+  if (error != std::errc() || seconds == 0 || !(value > 0) || value * seconds > 1e10)
+    return std::nullopt;
+  return std::llround(1e6 * value * seconds);
+}
 
 bool is_chosen(const std::vector<std::string>& patterns, const std::string& name) {
   return patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const auto& p) {

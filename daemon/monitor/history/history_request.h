@@ -47,6 +47,10 @@ std::optional<HistoryRequest> read_history_request(const HistoryArguments& argum
                                                    SummaryQuery& summaries,
                                                    std::vector<std::string>& problems);
 
+/// Parses "90m", "2h", "3d", "45s" or "45". Returns microseconds, or nullopt if `text` is not a
+/// duration > 0.
+std::optional<std::int64_t> read_duration(const std::string& text);
+
 /// Returns true if a name matches one of the patterns, with * and ?, or if there are no patterns.
 bool is_chosen(const std::vector<std::string>& patterns, const std::string& name);
 

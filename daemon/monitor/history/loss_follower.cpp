@@ -7,7 +7,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/history/history_files.h"
-#include "estimator/numeric/nan.h"
+#include "estimator/years/damping_days.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -16,8 +16,19 @@ constexpr std::int64_t kStart_d = 30, kYear_d = 365;
 constexpr int kMostSkipped = 100;
 constexpr std::int64_t kChunk_d = 180;  // days in memory at once
 
-/// Returns the start of the first summary. Skips summaries a year or more before the others: a
-/// clock was not set.
+std::vector<std::string> names_of(const std::vector<WeatherSpan>& spans) {
+  std::vector<std::string> out;
+  for (const WeatherSpan& s : spans) out.push_back(s.name);
+  return out;
+}
+
+}  // namespace
+
+std::int64_t followed_period_s(const HistorySettings& s) {
+  const bool hours = std::ranges::find(s.summary_s, kHour_s) != s.summary_s.end();
+  return hours ? kHour_s : s.summary_s.back();
+}
+
 std::optional<std::int64_t> first_summary(SummaryQuery& summaries, std::int64_t period_s) {
   auto first = summaries.first_us(period_s, -kEver_us);
   for (int skipped = 0; first && skipped < kMostSkipped; ++skipped) {
@@ -27,14 +38,6 @@ std::optional<std::int64_t> first_summary(SummaryQuery& summaries, std::int64_t 
   }
   return first;
 }
-
-std::vector<std::string> names_of(const std::vector<WeatherSpan>& spans) {
-  std::vector<std::string> out;
-  for (const WeatherSpan& s : spans) out.push_back(s.name);
-  return out;
-}
-
-}  // namespace
 
 std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& spans,
                                             std::int64_t first_day, std::int64_t to_day) {
@@ -86,6 +89,7 @@ bool LossFollower::begin(SummaryQuery& summaries, std::int64_t to_day) {
   // A clock that was ahead may have led beyond the present day.
   if (!same || to_day + 1 < next_day_) {
     watch_.reset();
+    weather_.clear();
     elements_ = std::move(elements);
     covariates_ = std::move(covariates);
     next_day_ = first_day;
@@ -95,23 +99,31 @@ bool LossFollower::begin(SummaryQuery& summaries, std::int64_t to_day) {
   return true;
 }
 
+/// Takes these days. If `stop` returns true, next_day_ stays.
 void LossFollower::take(SummaryQuery& summaries, std::int64_t from_day, std::int64_t to_day,
-                        std::vector<Loss>& found) {
+                        const std::function<bool()>& stop, std::vector<Loss>& found) {
   const std::int64_t from_us = from_day * kDay_us, to_us = to_day * kDay_us;
   std::vector<ElementDays> elements;
-  for (const SummaryParameter& p : elements_)
+  for (const SummaryParameter& p : elements_) {
+    if (stop()) return;
     elements.push_back(element_days(p, summaries, period_s_, window_s_, from_us, to_us));
+  }
   const WeatherTable weather = weather_of(summaries.weather(from_us, to_us), covariates_);
   for (std::int64_t day = from_day; day < to_day; ++day) {
+    if (stop()) return;
     std::vector<estimator::DayValue> values;
     for (const ElementDays& e : elements) values.push_back(watched(quantity_, e.value(day)));
     const auto loss = watch_->push(static_cast<double>(day), values, weather.of(day));
+    if (keeps_weather_)
+      if (Eigen::VectorXd regressors = watch_->regressors(); regressors.size() > 0)
+        weather_[day] = std::move(regressors);
     if (loss)
       found.push_back({loss->element == estimator::YearsWatch::kAllAlike
                            ? kWholeBuilding
                            : elements_[static_cast<std::size_t>(loss->element)].name,
                        in_quantity(quantity_, *loss)});
   }
+  next_day_ = to_day;
 }
 
 std::optional<std::vector<LossFollower::Loss>> LossFollower::advance(
@@ -123,14 +135,26 @@ std::optional<std::vector<LossFollower::Loss>> LossFollower::advance(
     return problem.empty() ? std::optional(out) : std::nullopt;
   }
   while (next_day_ < to_day && summaries.problem().empty() && !stop()) {
-    const std::int64_t until = std::min(next_day_ + kChunk_d, to_day);
-    take(summaries, next_day_, until, out);
-    next_day_ = until;
+    take(summaries, next_day_, std::min(next_day_ + kChunk_d, to_day), stop, out);
   }
   problem = summaries.problem();
   if (problem.empty() && next_day_ >= to_day) return out;
   watch_.reset();
+  weather_.clear();
   return std::nullopt;
+}
+
+WeatherEffects LossFollower::weather_effects() const {
+  WeatherEffects out;
+  if (!watch_ || watch_->days() == 0) return out;
+  out.covariates = covariates_;
+  out.weather = weather_;
+  for (std::size_t p = 0; p < elements_.size(); ++p)
+    out.by_element[elements_[p].name] =
+        watch_->weather_effect(p) *
+        (quantity_ == Quantity::damping ? -estimator::kDampingPower : 1);
+  out.find_mean();
+  return out;
 }
 
 }  // namespace framewatch::daemon

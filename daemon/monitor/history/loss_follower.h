@@ -3,13 +3,17 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/history_request.h"
 #include "daemon/monitor/history/summary_query.h"
+#include "daemon/monitor/history/weather_effects.h"
 #include "daemon/monitor/history/weather_table.h"
 #include "estimator/years/life_budget.h"
 #include "estimator/years/years_watch.h"
@@ -25,6 +29,14 @@ std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& span
 /// Returns the covariates that a history keeps for the days of these elements.
 WeatherTable kept_weather(const HistoryRequest& request, SummaryQuery& summaries,
                           const std::vector<ElementDays>& elements);
+
+/// Returns the length of the summaries that a LossFollower reads: hours if there are some,
+/// otherwise the longest.
+std::int64_t followed_period_s(const HistorySettings& settings);
+
+/// Returns the start of the first summary. Skips summaries a year or more before the others: a
+/// clock was not set.
+std::optional<std::int64_t> first_summary(SummaryQuery& summaries, std::int64_t period_s);
 
 /// Finds losses in the daily means of a history as it grows, with the result of find_losses() over
 /// all days so far. Begins again from the first day when an element or a covariate joins or leaves.
@@ -46,10 +58,16 @@ class LossFollower {
 
   int days() const { return watch_ ? watch_->days() : 0; }
 
+  /// Returns what the weather does to every element, as far as the days taken so far tell. Empty
+  /// without keep_weather(), and before there is a day with values.
+  WeatherEffects weather_effects() const;
+  /// Keeps the weather of every day for weather_effects(). Call it before advance().
+  void keep_weather() { keeps_weather_ = true; }
+
  private:
   bool begin(SummaryQuery& summaries, std::int64_t to_day);
   void take(SummaryQuery& summaries, std::int64_t from_day, std::int64_t to_day,
-            std::vector<Loss>& found);
+            const std::function<bool()>& stop, std::vector<Loss>& found);
 
   Quantity quantity_;
   estimator::LifeBudget budget_;
@@ -59,6 +77,8 @@ class LossFollower {
   std::vector<std::string> covariates_;
   std::optional<estimator::YearsWatch> watch_;
   std::int64_t next_day_ = 0;
+  bool keeps_weather_ = false;
+  std::map<std::int64_t, Eigen::VectorXd> weather_;  ///< regressors by day
 };
 
 }  // namespace framewatch::daemon

@@ -30,16 +30,9 @@ std::int64_t day_us(double day) {
   return static_cast<std::int64_t>(day) * kDay_us;
 }
 
-/// Returns the length of the summaries that are read: hours if there are some, otherwise the
-/// longest.
-std::int64_t read_period_s(const HistorySettings& s) {
-  const bool hours = std::ranges::find(s.summary_s, kHour_s) != s.summary_s.end();
-  return hours ? kHour_s : s.summary_s.back();
-}
-
 LossFollower follower_of(Quantity quantity, const Config& config) {
   return {quantity, config.watch->life, config.pipeline.options.window_s,
-          read_period_s(*config.history)};
+          followed_period_s(*config.history)};
 }
 
 /// Returns a number for a place, so that losses of one day have different ids.

@@ -115,6 +115,18 @@ std::vector<SummaryPeriods> SummaryQuery::periods() {
   return out;
 }
 
+std::vector<std::int64_t> SummaryQuery::period_lengths() {
+  // Each step is a look-up in the primary key.
+  SqliteStatement s =
+      file_.prepare(fmt::format("SELECT min(period_s) FROM period{} AND period_s > ?", kSound));
+  std::vector<std::int64_t> out;
+  for (std::int64_t last = 0;; s.again()) {
+    s.bind(1, last);
+    if (!s.row() || s.null(0)) return out;
+    out.push_back(last = s.integer(0));
+  }
+}
+
 std::optional<std::int64_t> SummaryQuery::newest_us() {
   SqliteStatement s = file_.prepare(fmt::format("SELECT max(last_us) FROM period{}", kSound));
   if (!s.row() || s.null(0)) return std::nullopt;
@@ -123,12 +135,18 @@ std::optional<std::int64_t> SummaryQuery::newest_us() {
 
 std::vector<SummaryRow> SummaryQuery::rows(std::int64_t parameter, std::int64_t period_s,
                                            std::int64_t from_us, std::int64_t to_us) {
+  std::vector<SummaryRow> out;
+  visit_rows(parameter, period_s, from_us, to_us, [&](const SummaryRow& r) { out.push_back(r); });
+  return out;
+}
+
+void SummaryQuery::visit_rows(std::int64_t parameter, std::int64_t period_s, std::int64_t from_us,
+                              std::int64_t to_us,
+                              const std::function<void(const SummaryRow&)>& take) {
   SqliteStatement s = file_.prepare(std::string(kSummaryRow) +
                                     " AND start_us >= ? AND start_us < ? ORDER BY start_us");
   s.bind(1, parameter).bind(2, period_s).bind(3, from_us).bind(4, to_us);
-  std::vector<SummaryRow> out;
-  while (s.row()) out.push_back(summary_row(s));
-  return out;
+  while (s.row()) take(summary_row(s));
 }
 
 std::optional<SummaryRow> SummaryQuery::newest_row(std::int64_t parameter, std::int64_t period_s) {
@@ -143,6 +161,14 @@ std::optional<std::int64_t> SummaryQuery::first_us(std::int64_t period_s, std::i
   SqliteStatement s = file_.prepare(
       fmt::format("SELECT min(start_us) FROM period{} AND period_s = ? AND start_us >= ?", kSound));
   s.bind(1, period_s).bind(2, from_us);
+  if (!s.row() || s.null(0)) return std::nullopt;
+  return s.integer(0);
+}
+
+std::optional<std::int64_t> SummaryQuery::last_us(std::int64_t period_s, std::int64_t to_us) {
+  SqliteStatement s = file_.prepare(
+      fmt::format("SELECT max(start_us) FROM period{} AND period_s = ? AND start_us < ?", kSound));
+  s.bind(1, period_s).bind(2, to_us);
   if (!s.row() || s.null(0)) return std::nullopt;
   return s.integer(0);
 }
@@ -162,16 +188,21 @@ std::vector<WeatherSpan> SummaryQuery::weather_spans() {
 
 std::vector<WeatherHour> SummaryQuery::weather(std::int64_t from_us, std::int64_t to_us) {
   std::vector<WeatherHour> out;
-  for (const WeatherSpan& span : weather_spans()) {
-    SqliteStatement s = file_.prepare(
-        "SELECT start_us, readings, mean, min, max FROM weather WHERE covariate ="
-        " (SELECT id FROM covariate WHERE name = ?) AND start_us >= ? AND start_us < ?"
-        " ORDER BY start_us");
-    s.bind(1, span.name).bind(2, from_us).bind(3, to_us);
-    while (s.row())
-      out.push_back({span.name, s.integer(0), s.integer(1), s.number(2), s.number(3), s.number(4)});
-  }
+  for (const WeatherSpan& span : weather_spans())
+    visit_weather(span.name, from_us, to_us, [&](const WeatherHour& hour) { out.push_back(hour); });
   return out;
+}
+
+void SummaryQuery::visit_weather(const std::string& covariate, std::int64_t from_us,
+                                 std::int64_t to_us,
+                                 const std::function<void(const WeatherHour&)>& take) {
+  SqliteStatement s = file_.prepare(
+      "SELECT start_us, readings, mean, min, max FROM weather WHERE covariate ="
+      " (SELECT id FROM covariate WHERE name = ?) AND start_us >= ? AND start_us < ?"
+      " ORDER BY start_us");
+  s.bind(1, covariate).bind(2, from_us).bind(3, to_us);
+  while (s.row())
+    take({covariate, s.integer(0), s.integer(1), s.number(2), s.number(3), s.number(4)});
 }
 
 std::vector<ChannelTotals> SummaryQuery::channels(std::int64_t from_us, std::int64_t to_us) {
@@ -196,6 +227,23 @@ std::vector<event_t> SummaryQuery::events(std::int64_t from_us, std::int64_t to_
   return events_in_order(s);
 }
 
+std::vector<event_t> SummaryQuery::raised_events(std::int64_t from_us, std::int64_t to_us,
+                                                 std::int64_t most) {
+  SqliteStatement s = file_.prepare(
+      fmt::format("SELECT * FROM ({} WHERE state = 1 AND time_us >= ? AND time_us < ?"
+                  " ORDER BY severity DESC, time_us DESC LIMIT ?) ORDER BY time_us DESC",
+                  kEvent));
+  s.bind(1, from_us).bind(2, to_us).bind(3, most);
+  return events_in_order(s);
+}
+
+std::int64_t SummaryQuery::count_raised(std::int64_t from_us, std::int64_t to_us) {
+  SqliteStatement s =
+      file_.prepare("SELECT count(*) FROM event WHERE state = 1 AND time_us >= ? AND time_us < ?");
+  s.bind(1, from_us).bind(2, to_us);
+  return s.row() ? s.integer(0) : 0;
+}
+
 std::vector<event_t> SummaryQuery::events_of(const std::string& kind, std::int64_t most) {
   SqliteStatement s = file_.prepare(
       fmt::format("{} WHERE kind = ? AND state = 1 ORDER BY time_us DESC LIMIT ?", kEvent));
@@ -204,11 +252,12 @@ std::vector<event_t> SummaryQuery::events_of(const std::string& kind, std::int64
 }
 
 std::vector<StoredAcknowledgement> SummaryQuery::acknowledgements(std::int64_t from_us,
-                                                                  std::int64_t to_us) {
+                                                                  std::int64_t to_us,
+                                                                  std::int64_t most) {
   SqliteStatement s = file_.prepare(
-      "SELECT id, time_us, kind, place, who, comment FROM acknowledgement"
-      " WHERE time_us >= ? AND time_us < ? ORDER BY time_us");
-  s.bind(1, from_us).bind(2, to_us);
+      "SELECT * FROM (SELECT id, time_us, kind, place, who, comment FROM acknowledgement"
+      " WHERE time_us >= ? AND time_us < ? ORDER BY time_us DESC LIMIT ?) ORDER BY time_us");
+  s.bind(1, from_us).bind(2, to_us).bind(3, most);
   std::vector<StoredAcknowledgement> out;
   while (s.row())
     out.push_back({s.integer(0), s.integer(1), s.text(2), s.text(3), s.text(4), s.text(5)});

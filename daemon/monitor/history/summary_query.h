@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,29 +63,46 @@ class SummaryQuery {
   std::string structure();                     ///< of the newest configuration
   std::vector<SummaryParameter> parameters();  ///< in the order of the newest configuration
   std::vector<SummaryPeriods> periods();
+  /// Returns the lengths of the periods, ascending, without reading them all as periods() does.
+  std::vector<std::int64_t> period_lengths();
   /// Returns the end of the newest window; nullopt without any window.
   std::optional<std::int64_t> newest_us();
   /// Returns the periods of a length that start in [from_us, to_us), in order of time.
   std::vector<SummaryRow> rows(std::int64_t parameter, std::int64_t period_s, std::int64_t from_us,
                                std::int64_t to_us);
+  /// Gives the same periods to `take`, one by one.
+  void visit_rows(std::int64_t parameter, std::int64_t period_s, std::int64_t from_us,
+                  std::int64_t to_us, const std::function<void(const SummaryRow&)>& take);
   /// Returns the newest period in which the parameter was observable.
   std::optional<SummaryRow> newest_row(std::int64_t parameter, std::int64_t period_s);
   /// Returns the start of the first period of this length from a time on; nullopt without any.
   std::optional<std::int64_t> first_us(std::int64_t period_s, std::int64_t from_us);
+  /// Returns the start of the last period of this length that starts before a time; nullopt without
+  /// any.
+  std::optional<std::int64_t> last_us(std::int64_t period_s, std::int64_t to_us);
   /// Returns the covariates with a known unit. Empty in a database of an older version.
   std::vector<WeatherSpan> weather_spans();
   /// Returns the hours of weather that start in [from_us, to_us), by covariate and in order of
   /// time. Empty in a database of an older version.
   std::vector<WeatherHour> weather(std::int64_t from_us, std::int64_t to_us);
+  /// Gives the hours of one covariate to `take`, one by one. Not in a database of an older version.
+  void visit_weather(const std::string& covariate, std::int64_t from_us, std::int64_t to_us,
+                     const std::function<void(const WeatherHour&)>& take);
   /// Returns the counts of the shortest periods that start in [from_us, to_us).
   std::vector<ChannelTotals> channels(std::int64_t from_us, std::int64_t to_us);
   /// Returns the newest `most` events of [from_us, to_us), in order of time.
   std::vector<event_t> events(std::int64_t from_us, std::int64_t to_us, std::int64_t most);
 
+  /// Returns the gravest `most` events that were raised in [from_us, to_us), of equal ones the
+  /// newest, in order of time.
+  std::vector<event_t> raised_events(std::int64_t from_us, std::int64_t to_us, std::int64_t most);
+  /// Returns the number of events that were raised in [from_us, to_us).
+  std::int64_t count_raised(std::int64_t from_us, std::int64_t to_us);
   /// Returns the newest `most` raised events of a kind, in order of time.
   std::vector<event_t> events_of(const std::string& kind, std::int64_t most);
-  /// Returns the acknowledgements of [from_us, to_us), in order of time.
-  std::vector<StoredAcknowledgement> acknowledgements(std::int64_t from_us, std::int64_t to_us);
+  /// Returns the newest `most` acknowledgements of [from_us, to_us), in order of time.
+  std::vector<StoredAcknowledgement> acknowledgements(std::int64_t from_us, std::int64_t to_us,
+                                                      std::int64_t most = INT64_MAX);
 
   /// Returns what could not be read so far; empty if all could be read.
   std::string problem() const;

@@ -78,6 +78,7 @@ function choose(i) {
   strip = engineering(size, q.unit);
   past.forEach(pushStiffness);
   strips.k.name(`${called(q)}, ${strip.unit}: value and one standard error`);
+  if (years) years.element();
   strips.drift.name(q.frames.length ? `${q.last_story > q.story ? 'drift over' : 'story drift in'} ${place(q)}, mm` : 'story drift: choose a frame');
 }
 function start(json) {
@@ -101,6 +102,7 @@ function start(json) {
   strips.excitation = new Strip(parent, 'excitation: rms of the base over a second, m/s²', 'Without excitation nothing can be identified.', [{name: 'base rms', color: 'green'}], 300, 4);
   strips.residual = new Strip(parent, 'residual over response', 'Part of the measured response that the identified model does not explain in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
   signals = new Signals();
+  if (plan.history) years = window.framewatch.yearsView = new Years();
   startSession();
   startModes();
   choose(Math.max(0, plan.parameters.findIndex(q => q.name === layout.element)));
@@ -121,6 +123,7 @@ function applyTheme() {
   if (g) for (let x = 0; x < 160; x++) { g.fillStyle = ratioColor(1 + kFullColor * (x / 80 - 1), theme()); g.fillRect(x, 0, 1, 14); }
   for (const s of Object.values(strips)) { s.make(); s.fresh = true; }
   if (signals) signals.make();
+  if (years) years.redraw();
 }
 // Forgets all that was shown, for another time of a recorded session.
 function forget() {
@@ -313,6 +316,7 @@ function draw() {
   building.draw();
   for (const s of Object.values(strips)) s.draw();
   signals.draw(now);
+  if (years) years.draw();
   if (now - (draw.slow || 0) > 200) { draw.slow = now; slow(now); }
   if (pending !== null) {
     const ms = Date.now() - pending / 1e3;
@@ -346,7 +350,7 @@ root.dataset.theme = localStorage.getItem('theme') || (matchMedia('(prefers-colo
 $('theme').onclick = () => { useTheme(root.dataset.theme === 'dark' ? 'light' : 'dark'); localStorage.setItem('theme', root.dataset.theme); };
 // Redraws the canvases in light colors for printing.
 let screenTheme = null;
-function redraw() { building.draw(); for (const b of boxPlots) b.draw(); for (const s of Object.values(strips)) s.draw(); signals.drawn = 0; signals.draw(performance.now()); }
+function redraw() { building.draw(); for (const b of boxPlots) b.draw(); for (const s of Object.values(strips)) s.draw(); signals.drawn = 0; signals.draw(performance.now()); if (years) years.redraw(); }
 addEventListener('beforeprint', () => { screenTheme = root.dataset.theme; printWidth = kPaper_px; useTheme('light'); redraw(); });
 addEventListener('afterprint', () => { printWidth = 0; if (screenTheme) useTheme(screenTheme); redraw(); });
 function zoneButton() { $('zone').textContent = zone === 'UTC' ? 'Times: UTC' : 'Times: local'; }
@@ -354,6 +358,7 @@ $('zone').onclick = () => {
   zone = zone === 'UTC' ? 'local' : 'UTC';
   localStorage.setItem('zone', zone);
   zoneButton(); showAnswers(); showAlarms(); loadEventReports();
+  if (years && years.data) years.show(years.data);
   for (const s of Object.values(strips)) { s.make(); s.fresh = true; }
 };
 zoneButton();

@@ -212,6 +212,7 @@ std::string building_json(const Config& config, double rate_hz) {
                     {"parameters", parameters},
                     {"axes", axes},
                     {"rate_hz", rate_hz},
+                    {"history", config.history.has_value()},
                     {"window_s", o.window_s},
                     {"high_pass_hz", o.high_pass_hz},
                     {"watch", config.watch.has_value()},

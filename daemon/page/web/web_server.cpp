@@ -18,6 +18,7 @@
 #include "daemon/base/served_file.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/page/view/live_view.h"
+#include "daemon/page/view/years_desk.h"
 #include "daemon/page/web/session_playback.h"
 #include "daemon/page/web/web_answer.h"
 #include "daemon/page/web/web_files.h"
@@ -51,10 +52,13 @@ const char* type_of(const std::string& path) {
 class WebServer::Implementation {
  public:
   Implementation(const WebSettings& settings, LiveView& view)
-      : settings_(settings), view_(view), guard_(settings.connections) {}
+      : settings_(settings), view_(view), guard_(settings.connections) {
+    if (view.config().history) desk_.emplace(view.config());
+  }
 
   ~Implementation() {
     stopping_ = true;
+    desk_.reset();
     wake();
     if (daemon_) MHD_stop_daemon(daemon_);
   }
@@ -62,12 +66,12 @@ class WebServer::Implementation {
   bool start(int socket, std::string& error) {
     const int most = settings_.connections.connections();
     if (allow_descriptors(most + kOtherDescriptors, error)) {
-      daemon_ = MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0,
-                                 nullptr, nullptr, &Implementation::handle, this,
-                                 MHD_OPTION_LISTEN_SOCKET, socket, MHD_OPTION_CONNECTION_LIMIT,
-                                 static_cast<unsigned>(most), MHD_OPTION_CONNECTION_TIMEOUT,
-                                 settings_.connections.idle_s, MHD_OPTION_NOTIFY_CONNECTION,
-                                 &Implementation::notify, this, MHD_OPTION_END);
+      daemon_ = MHD_start_daemon(
+          MHD_USE_AUTO_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, nullptr, nullptr,
+          &Implementation::handle, this, MHD_OPTION_LISTEN_SOCKET, socket,
+          MHD_OPTION_CONNECTION_LIMIT, static_cast<unsigned>(most), MHD_OPTION_CONNECTION_TIMEOUT,
+          settings_.connections.idle_s, MHD_OPTION_NOTIFY_CONNECTION, &Implementation::notify, this,
+          MHD_OPTION_NOTIFY_COMPLETED, &Implementation::completed, nullptr, MHD_OPTION_END);
       if (!daemon_) error = "cannot start libmicrohttpd";
     }
     if (!daemon_) {
@@ -103,12 +107,24 @@ class WebServer::Implementation {
       guard.closed(socket_of(c));
   }
 
-  /// Handles a request when its head is complete. Never waits for a body.
+  /// A request about the history. Its connection is suspended until there is an answer.
+  struct Asked {
+    YearsAnswer answer;
+  };
+
+  static void completed(void*, MHD_Connection*, void** asked, MHD_RequestTerminationCode) {
+    const std::unique_ptr<Asked> ended(static_cast<Asked*>(*asked));
+    *asked = nullptr;
+  }
+
+  /// Handles a request when its head is complete, and once more when an answer that it waited for
+  /// has come. Never waits for a body.
   static MHD_Result handle(void* of, MHD_Connection* c, const char* url, const char* method,
-                           const char*, const char*, std::size_t*, void**) {
+                           const char*, const char*, std::size_t*, void** asked) {
     auto& self = *static_cast<Implementation*>(of);
+    if (*asked != nullptr) return self.answer_asked(c, *static_cast<Asked*>(*asked));
     self.guard_.asked(socket_of(c));
-    return self.respond(c, method, url);
+    return self.respond(c, method, url, asked);
   }
 
   MHD_Result text(MHD_Connection* c, const std::string& content, const char* type,
@@ -125,7 +141,8 @@ class WebServer::Implementation {
     return text(c, found->content, found->type.c_str(), kReportPolicy);
   }
 
-  MHD_Result respond(MHD_Connection* c, const std::string& method, const std::string& path) {
+  MHD_Result respond(MHD_Connection* c, const std::string& method, const std::string& path,
+                     void** asked) {
     const WebRequest request = web_request(c, method, path, "framewatch");
     if (const Admission admission = admit(settings_, request); admission != Admission::served) {
       const Refusal refusal = refusal_of(admission);
@@ -135,6 +152,7 @@ class WebServer::Implementation {
     if (path == "/" && !request.token.empty()) return exchange(c, request.token);
     if (path == "/events") return stream(c);
     if (path == "/building.json") return text(c, view_.building_json(), kJson);
+    if (path == "/years.json") return ask_years(c, asked);
     if (path == "/history.json") return text(c, view_.history_json(), kJson);
     if (path == "/sessions.json")
       return text(c, settings_.sessions.empty() ? "null" : sessions_json(settings_.sessions),
@@ -154,6 +172,36 @@ class WebServer::Implementation {
       return text(c, settings_.metrics(guard_.use()), kMetricsType);
     if (path == "/healthz") return plain(c, MHD_HTTP_OK, "ok");
     return file(c, path == "/" ? "/index.html" : path);
+  }
+
+  /// Suspends the connection until the desk has an answer.
+  MHD_Result ask_years(MHD_Connection* c, void** asked) {
+    if (!desk_)
+      return plain(c, MHD_HTTP_NOT_FOUND, "the configuration has no [history], so nothing is kept");
+    const auto text = [c](const char* name) { return header(c, name, MHD_GET_ARGUMENT_KIND); };
+    std::string problem;
+    std::optional<YearsRequest> request = read_years_request(
+        text("from"), text("to"), text("last"), text("elements"), text("only"), problem);
+    if (!request) return plain(c, MHD_HTTP_BAD_REQUEST, problem);
+    auto waiting = std::make_unique<Asked>();
+    MHD_suspend_connection(c);
+    const bool taken =
+        desk_->ask(std::move(*request), [c, waits = waiting.get()](YearsAnswer answer) {
+          waits->answer = std::move(answer);
+          MHD_resume_connection(c);
+        });
+    if (!taken) {
+      waiting->answer = {MHD_HTTP_SERVICE_UNAVAILABLE,
+                         "too many requests about the history are waiting: try again later"};
+      MHD_resume_connection(c);
+    }
+    *asked = waiting.release();  // completed() owns it now
+    return MHD_YES;
+  }
+
+  MHD_Result answer_asked(MHD_Connection* c, const Asked& asked) {
+    return asked.answer.code == MHD_HTTP_OK ? text(c, asked.answer.text, kJson)
+                                            : plain(c, asked.answer.code, asked.answer.text);
   }
 
   MHD_Result act(MHD_Connection* c, const std::string& path) {
@@ -318,7 +366,8 @@ class WebServer::Implementation {
   std::mutex mutex_;
   std::set<MHD_Connection*> waiting_;  ///< suspended until new events come
   std::atomic<bool> stopping_ = false;
-  int playing_ = 0;  ///< used by the thread of libmicrohttpd only
+  int playing_ = 0;                ///< used by the thread of libmicrohttpd only
+  std::optional<YearsDesk> desk_;  ///< with [history]
 };
 
 WebServer::WebServer(const WebSettings& settings, LiveView& view)

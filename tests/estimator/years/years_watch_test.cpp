@@ -277,6 +277,46 @@ TEST(Years, DampingThatGrowsIsFoundAndWeatherIsNot) {
   }
 }
 
+TEST(Years, TheEffectOfTheWeatherIsLearnedAndALossIsNotTakenForIt) {
+  constexpr int kLost = 3;
+  constexpr double kShare = 0.05, kLeastSeason = 0.006, kMostLeft = 0.002, kMostOff = 0.01;
+  double season_of_all = 0;
+  World world(7);
+  YearsWatch watch(kStories, kWeather, LifeBudget{});
+  EXPECT_EQ(watch.regressors().size(), 0);
+  std::vector<Eigen::VectorXd> regressors;
+  std::vector<std::vector<double>> logs(kStories);
+  const auto event = loss({kLost}, kShare);
+  for (int day = 1; day <= kThreeYears_d; ++day) {
+    event(world);
+    world.next();
+    std::vector<DayValue> values;
+    for (const World::Story& s : world.stories) values.push_back({s.value, kNoise * s.value});
+    (void)watch.push(day, values, {world.degc, world.percent});
+    regressors.push_back(watch.regressors());
+    for (std::size_t p = 0; p < kStories; ++p) logs[p].push_back(std::log(values[p].value));
+  }
+  for (std::size_t p = 0; p < kStories; ++p) {
+    const Eigen::VectorXd effect = watch.weather_effect(p);
+    EXPECT_EQ(effect[0], 0);
+    double raw = 0, left = 0, before = 0, after = 0;
+    for (int day = 1; day <= kThreeYears_d; ++day) {
+      const auto d = static_cast<std::size_t>(day - 1);
+      const double season = std::sin(2 * M_PI * (day - 110) / kYear_d);
+      const double step = p == kLost && day >= kLossDay ? std::log1p(-kShare) : 0;
+      const double corrected = logs[p][d] - effect.dot(regressors[d]);
+      raw += 2 * season * (logs[p][d] - step - std::log(kStiffness)) / kThreeYears_d;
+      left += 2 * season * (corrected - step - std::log(kStiffness)) / kThreeYears_d;
+      (day < kLossDay ? before : after) +=
+          corrected / (day < kLossDay ? kLossDay - 1 : kThreeYears_d - kLossDay + 1);
+    }
+    season_of_all += std::abs(raw) / kStories;
+    EXPECT_LT(std::abs(left), kMostLeft) << p;
+    EXPECT_NEAR(after - before, p == kLost ? std::log1p(-kShare) : 0, kMostOff) << p;
+  }
+  EXPECT_GT(season_of_all, kLeastSeason);
+}
+
 TEST(Damping, AndItsStiffnessAreEachOthersInverse) {
   const DayValue of_damping = as_stiffness({3e4, 300});
   EXPECT_NEAR(std::pow(of_damping.value, -kDampingPower), 3e4, 1e-6);

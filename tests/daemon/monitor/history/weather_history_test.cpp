@@ -219,6 +219,37 @@ TEST_F(WeatherHistory, FollowingDayByDayFindsWhatAllDaysTogetherShow) {
   EXPECT_TRUE(advance(by_day, kDays).empty());
 }
 
+TEST_F(WeatherHistory, WhatFollowsTheWeatherIsTakenOutOfAValueAndALossIsNot) {
+  write(0, kDays);
+  LossFollower f = follower();
+  f.keep_weather();
+  EXPECT_TRUE(f.weather_effects().empty());
+  advance(f, kDays);
+  const WeatherEffects effects = f.weather_effects();
+  ASSERT_FALSE(effects.empty());
+  EXPECT_EQ(effects.covariates, std::vector<std::string>{"outside_degc"});
+  EXPECT_EQ(effects.weather.size(), static_cast<std::size_t>(kDays));
+  EXPECT_TRUE(effects.knows("kx_2_y2"));
+  EXPECT_FALSE(effects.knows("cx_1_y1"));
+  const auto noon = [](int day) { return (kFirstDay + day) * kDay_us + kDay_us / 2; };
+  for (const char* name : {"kx_1_y1", "kx_2_y1"}) {
+    const double summer = effects.at(name, noon(182)), winter = effects.at(name, noon(5));
+    EXPECT_NEAR(summer - winter, -kPerDegc * (degc(kFirstDay + 182) - degc(kFirstDay + 5)), 0.004);
+    // Between two noons lies what is between their values.
+    EXPECT_NEAR(effects.at(name, noon(90) + kDay_us / 4),
+                0.75 * effects.at(name, noon(90)) + 0.25 * effects.at(name, noon(91)), 1e-12);
+    EXPECT_NEAR(effects.over(name, noon(90) - kDay_us / 2, noon(92) - kDay_us / 2),
+                (effects.at(name, noon(90)) + effects.at(name, noon(91))) / 2, 1e-12);
+    EXPECT_EQ(effects.at(name, noon(kDays) - 1), effects.at(name, noon(kDays - 1)));
+    EXPECT_TRUE(std::isnan(effects.at(name, noon(kDays + 1))));
+    EXPECT_TRUE(std::isnan(effects.at(name, noon(-2))));
+  }
+  EXPECT_TRUE(std::isnan(effects.at("cx_1_y1", noon(10))));
+  LossFollower without = follower();
+  advance(without, kDays);
+  EXPECT_TRUE(without.weather_effects().empty());
+}
+
 TEST_F(WeatherHistory, AHealthyBuildingHasNoLoss) {
   write(0, kDays, false);
   LossFollower f = follower();

@@ -55,8 +55,8 @@ inline std::string request(const std::string& line, const std::string& more = ""
 class Served : public ::testing::Test {
  protected:
   Served() : Served(settings()) {}
-  explicit Served(const daemon::WebSettings& settings)
-      : config_(good(kGoodConfig)),
+  explicit Served(const daemon::WebSettings& settings, const std::string& config = kGoodConfig)
+      : config_(good(config)),
         view_(
             config_,
             [this](std::int64_t, const std::string& channel,
