@@ -55,8 +55,9 @@ WeatherModel WeatherLearner::model(std::int64_t end_us) {
 }
 
 void WeatherLearner::work(const std::stop_token& stop) {
-  const sched_param idle{};
-  ::pthread_setschedparam(::pthread_self(), SCHED_IDLE, &idle);
+  // A long computation that nobody waits for. An idle priority would never end on a busy machine.
+  const sched_param batch{};
+  ::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &batch);
   while (!stop.stop_requested()) {
     std::int64_t day = 0;
     {
