@@ -18,7 +18,7 @@
 
 namespace framewatch::daemon {
 
-/// Learns in a thread of its own what the weather does to the elements, from the daily means
+/// Learns in its own thread what the weather does to the elements, from the daily means
 /// of the whole history. It begins when an answer first needs it, and goes on from there with every
 /// new day.
 class WeatherLearner {

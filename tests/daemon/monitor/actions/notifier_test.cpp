@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 // Limits.
 constexpr double kNoWaitForAThousand_s = 2;  // time that the caller may lose
 constexpr double kLongestEnd_s = 30;  // with a receiver that does not answer: 2 s and the last poll
-constexpr auto kSoon = 60s;          // for short actions on an idle machine
+constexpr auto kSoon = 60s;           // for short actions on an idle machine
 
 TEST(Notifier, NeverBlocksItsCallerAndEndsInTime) {
   std::atomic<int> begun = 0;

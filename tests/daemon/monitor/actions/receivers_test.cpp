@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 constexpr double kLongestEnd_s = 30;  // to end a process group that ignores SIGTERM
 constexpr double kShortTimeout_s = 0.4;
 constexpr double kTimeToBegin_s = 10;  // a shell and its child start, on a busy machine
-constexpr auto kSoon = 60s;           // for short actions on an idle machine
+constexpr auto kSoon = 60s;            // for short actions on an idle machine
 
 class Hook : public testing::Test {
  protected:
