@@ -55,7 +55,8 @@ WeatherModel WeatherLearner::model(std::int64_t end_us) {
 }
 
 void WeatherLearner::work(const std::stop_token& stop) {
-  // A long computation that nobody waits for. An idle priority would never end on a busy machine.
+  // A long computation, which may wait for others. At an idle priority it would never end on a busy
+  // machine.
   const sched_param batch{};
   ::pthread_setschedparam(::pthread_self(), SCHED_BATCH, &batch);
   while (!stop.stop_requested()) {
