@@ -100,15 +100,20 @@ YearsDesk::YearsDesk(const Config& config)
       learner_(config),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
-YearsDesk::~YearsDesk() {
+void YearsDesk::close() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    closed_ = true;
+  }
   thread_.request_stop();
-  thread_.join();
-  for (Asked& asked : waiting_) asked.done({kNoHistory, "framewatch serve ends"});
+  if (thread_.joinable()) thread_.join();
+  for (Asked& asked : std::exchange(waiting_, {}))
+    asked.done({kNoHistory, "framewatch serve ends"});
 }
 
 bool YearsDesk::ask(YearsRequest request, Done done) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (waiting_.size() == kMost) return false;
+  if (closed_ || waiting_.size() == kMost) return false;
   waiting_.push_back({std::move(request), std::move(done)});
   wake_.notify_one();
   return true;

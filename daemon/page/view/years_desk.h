@@ -55,12 +55,13 @@ class YearsDesk {
 
   /// `config`, which has [history], must outlive this.
   explicit YearsDesk(const Config& config);
-  /// Answers the requests that still wait with 503.
-  ~YearsDesk();
+  ~YearsDesk() { close(); }
 
   /// Queues a request. `done` is called once, in the thread. Returns false, and never calls it,
-  /// when kMost requests wait.
+  /// when kMost requests wait, and after close().
   bool ask(YearsRequest request, Done done);
+  /// Answers the requests that still wait with 503, and takes no more.
+  void close();
 
  private:
   struct Asked {
@@ -72,8 +73,9 @@ class YearsDesk {
 
   const Config& config_;
   WeatherLearner learner_;
-  std::mutex mutex_;
+  std::mutex mutex_;  ///< guards the members below
   std::condition_variable_any wake_;
+  bool closed_ = false;
   std::deque<Asked> waiting_;
   std::jthread thread_;  ///< last, because it uses the members above
 };

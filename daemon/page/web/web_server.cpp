@@ -58,7 +58,7 @@ class WebServer::Implementation {
 
   ~Implementation() {
     stopping_ = true;
-    desk_.reset();
+    if (desk_) desk_->close();
     wake();
     if (daemon_) MHD_stop_daemon(daemon_);
   }
