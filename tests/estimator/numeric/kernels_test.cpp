@@ -326,7 +326,7 @@ TEST(Kernels, PortableKernelsGiveTheSameBitsOnEveryArchitecture) {
   std::uint64_t digest = 1469598103934665603u;  // FNV-1a by words
   for (const double value : all_results(*kernels::portable()))
     digest = (digest ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211u;
-  EXPECT_EQ(digest, 0x836e5e699a13e750u);
+  EXPECT_EQ(digest, 0x65dadbd592e781c5u);
 }
 
 }  // namespace kernels_test
