@@ -24,7 +24,7 @@ namespace web_server_test {
 using test::ask, test::request, test::Served;
 
 // Limits.
-constexpr std::size_t kPageBytes = 160'000;
+constexpr std::size_t kPageBytes = 185'000;
 
 TEST(Page, IsLightAndFetchesNothingFromElsewhere) {
   std::size_t bytes = 0;
