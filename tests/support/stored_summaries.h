@@ -9,7 +9,7 @@
 
 namespace framewatch::test {
 
-/// Writes rows of a history of its own. A row that does not go in fails the test.
+/// Makes a history and writes rows to it. The test fails if the database refuses a row.
 class StoredSummaries {
  public:
   /// Makes the directory and an empty database.

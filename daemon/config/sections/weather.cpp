@@ -28,14 +28,17 @@ std::string problem_of_covariate(const std::string& name) {
   return {};
 }
 
+bool has_control_character(const std::string& text) {
+  return std::ranges::any_of(text, [](unsigned char c) { return c < ' ' || c == 127; });
+}
+
 /// Returns the rule that a topic breaks, or an empty text.
 std::string problem_of_topic(const std::string& topic) {
   if (topic.empty() || topic.size() > kMostTopic_bytes)
     return fmt::format("a topic has 1 to {} bytes", kMostTopic_bytes);
   if (topic.find_first_of("+#") != std::string::npos)
     return "must be one topic: no + and no #, which stand for many";
-  if (std::ranges::any_of(topic, [](unsigned char c) { return c < ' ' || c == 127; }))
-    return "must not contain control characters";
+  if (has_control_character(topic)) return "must not contain control characters";
   return {};
 }
 
@@ -148,8 +151,7 @@ std::optional<drivers::MqttSettings> read_mqtt(const TomlValue& document, Config
     if (section.given(one) && section.value(other) == nullptr)
       section.problem(one, fmt::format("needs {}", other));
   for (const char* key : {"user", "client_id"})
-    if (const std::string text = section.text(key);
-        std::ranges::any_of(text, [](unsigned char c) { return c < ' ' || c == 127; }))
+    if (has_control_character(section.text(key)))
       section.problem(key, "must not contain control characters");
   if (address && !address->tls && !drivers::is_this_machine(*address) && !out.password_file.empty())
     config.doubts.push_back(

@@ -19,8 +19,8 @@ namespace {
 
 using estimator::kNaN;
 
-constexpr std::int64_t kDay_s = 86'400, kWeatherHour_s = 3600;
-constexpr std::int64_t kSteps_s[] = {60,         600,         kWeatherHour_s, kDay_s,
+constexpr std::int64_t kDay_s = 86'400;
+constexpr std::int64_t kSteps_s[] = {60,         600,         kHour_s,     kDay_s,
                                      7 * kDay_s, 28 * kDay_s, 364 * kDay_s};
 
 /// The summaries of one step.
@@ -171,7 +171,7 @@ std::vector<double> corrected_points(const std::string& element, const ElementPo
 std::vector<WeatherPoints> weather_points(SummaryQuery& summaries, const HistorySpan& span) {
   std::vector<WeatherPoints> out;
   const std::size_t n = span.points();
-  const std::int64_t step_us = span.step_s * kSecond_us, hour_us = kWeatherHour_s * kSecond_us;
+  const std::int64_t step_us = span.step_s * kSecond_us, hour_us = kHour_s * kSecond_us;
   const std::int64_t from_us = floor_to(span.from_us, hour_us);
   for (const WeatherSpan& kept : summaries.weather_spans()) {
     WeatherPoints w{kept.name, std::vector<double>(n, kNaN), std::vector<double>(n, kNaN),

@@ -22,12 +22,12 @@ std::vector<std::string> names_of(const std::vector<WeatherSpan>& spans) {
   return out;
 }
 
-}  // namespace
-
-std::int64_t followed_period_s(const HistorySettings& s) {
+std::int64_t period_s_of(const HistorySettings& s) {
   const bool hours = std::ranges::find(s.summary_s, kHour_s) != s.summary_s.end();
   return hours ? kHour_s : s.summary_s.back();
 }
+
+}  // namespace
 
 std::optional<std::int64_t> first_summary(SummaryQuery& summaries, std::int64_t period_s) {
   auto first = summaries.first_us(period_s, -kEver_us);
@@ -155,6 +155,11 @@ WeatherEffects LossFollower::weather_effects() const {
         (quantity_ == Quantity::damping ? -estimator::kDampingPower : 1);
   out.find_mean();
   return out;
+}
+
+LossFollower follower_of(Quantity quantity, const Config& config) {
+  return {quantity, config.watch ? config.watch->life : estimator::LifeBudget(),
+          config.pipeline.options.window_s, period_s_of(*config.history)};
 }
 
 }  // namespace framewatch::daemon

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "daemon/config/config.h"
 #include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/history_request.h"
 #include "daemon/monitor/history/summary_query.h"
@@ -29,10 +30,6 @@ std::vector<WeatherSpan> lasting_covariates(const std::vector<WeatherSpan>& span
 /// Returns the covariates that a history keeps for the days of these elements.
 WeatherTable kept_weather(const HistoryRequest& request, SummaryQuery& summaries,
                           const std::vector<ElementDays>& elements);
-
-/// Returns the length of the summaries that a LossFollower reads: hours if there are some,
-/// otherwise the longest.
-std::int64_t followed_period_s(const HistorySettings& settings);
 
 /// Returns the start of the first summary. Skips summaries a year or more before the others: a
 /// clock was not set.
@@ -80,5 +77,9 @@ class LossFollower {
   bool keeps_weather_ = false;
   std::map<std::int64_t, Eigen::VectorXd> weather_;  ///< regressors by day
 };
+
+/// Returns a follower of a history. `config` has [history]; without [watch] the budget is the
+/// default. Reads hours if the history has some, otherwise its longest summaries.
+LossFollower follower_of(Quantity quantity, const Config& config);
 
 }  // namespace framewatch::daemon

@@ -30,11 +30,6 @@ std::int64_t day_us(double day) {
   return static_cast<std::int64_t>(day) * kDay_us;
 }
 
-LossFollower follower_of(Quantity quantity, const Config& config) {
-  return {quantity, config.watch->life, config.pipeline.options.window_s,
-          followed_period_s(*config.history)};
-}
-
 /// Returns a number for a place, so that losses of one day have different ids.
 std::int64_t place_number(const std::string& place) {
   std::uint64_t hash = 1469598103934665603u;

@@ -11,6 +11,7 @@ const middle = list => { const v = list.filter(x => x !== null).sort((a, b) => a
 const least = list => list.reduce((a, b) => b !== null && (a === null || b < a) ? b : a, null);
 const most = list => list.reduce((a, b) => b !== null && (a === null || b > a) ? b : a, null);
 const inWords = names => names.length < 2 ? names.join() : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
+const axisOf = style => ({stroke: style.soft, grid: {stroke: style.rule, width: 1}, ticks: {stroke: style.rule}, font: '11px system-ui', labelFont: '12px system-ui', labelSize: 16, labelGap: 0});
 let years = null;
 class Years {
   constructor() {
@@ -134,7 +135,7 @@ class Years {
     return `${span}. ${value}${corrected}`;
   }
   axes(style, last, label, values) {
-    const axis = {stroke: style.soft, grid: {stroke: style.rule, width: 1}, ticks: {stroke: style.rule}, font: '11px system-ui', labelFont: '12px system-ui', labelSize: 16, labelGap: 0};
+    const axis = axisOf(style);
     const day = '{D} {MMM}', on = '\n{D} {MMM} {YYYY}';
     const x = {...axis, size: last ? 40 : 8, space: 70, values: last ? [[kDay_s * 365, '{YYYY}', null, null, null, null, null, null, 1], [kDay_s * 28, '{MMM}', '\n{YYYY}', null, null, null, null, null, 1], [kDay_s, day, '\n{YYYY}', null, null, null, null, null, 1], [60, '{HH}:{mm}', on, null, on, null, null, null, 1]] : (u, v) => v.map(() => '')};
     return [x, {...axis, size: kPlotLeft_px - 16, label, ...(values ? {values} : {})}];
@@ -195,7 +196,7 @@ class Years {
     });
     const range = (u, a, b) => a === null || b === null || a === undefined ? [0, 1] : uPlot.rangeNum(a, b, 0.08, true);
     const lists = [['as measured', 'blue', scaled(e.median)], ...(corrected ? [['in the mean weather', 'orange', scaled(e.corrected)]] : [])];
-    const axis = {stroke: style.soft, grid: {stroke: style.rule, width: 1}, ticks: {stroke: style.rule}, font: '11px system-ui', labelFont: '12px system-ui', labelSize: 16, labelGap: 0};
+    const axis = axisOf(style);
     this.plots.push(new uPlot({mode: 2, width: printWidth ? printWidth / 2 : Math.max(220, box.clientWidth), height: 230, legend: {show: corrected, live: false}, cursor: {show: false}, scales: {x: {time: false, range}, y: {range}},
       axes: [{...axis, size: 30, label: name}, {...axis, size: kPlotLeft_px - 16, label: this.unit.unit}],
       series: [null, ...lists.map(([label, color]) => ({label, stroke: style[color], fill: style[color], paths: dots(color), points: {show: false}, facets: [{scale: 'x', auto: true}, {scale: 'y', auto: true}]}))],
@@ -207,7 +208,7 @@ class Years {
     let taken = -Infinity;
     g.save();
     g.font = `bold ${11 * r}px system-ui`; g.textAlign = 'center'; g.lineWidth = r;
-    for (const m of [...this.marks].sort((a, b) => a.us - b.us)) {
+    for (const m of this.marks) {
       const x = u.valToPos(m.us / 1e6, 'x', true);
       if (x < left - 1 || x > left + width + 1) continue;
       g.strokeStyle = g.fillStyle = style[this.colorOf(m)];

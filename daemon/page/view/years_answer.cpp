@@ -22,7 +22,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr unsigned kGood = 200, kBadRequest = 400, kUnknown = 404, kUnavailable = 503;
+constexpr unsigned kBadRequest = 400, kUnknown = 404, kUnavailable = 503;
 constexpr std::int64_t kMostEvents = 200, kMostNotes = 200;
 constexpr const char* kNumber = "{:.7g}";
 
@@ -126,7 +126,7 @@ std::optional<YearsRequest> read_years_request(const std::string& from, const st
 }
 
 YearsAnswer answer_years(const YearsRequest& request, SummaryQuery& summaries,
-                         const WeatherModel& model) {
+                         const std::optional<HistoryExtent>& all, const WeatherModel& model) {
   const std::vector<SummaryParameter> known = summaries.parameters();
   std::vector<std::string> names;
   for (const SummaryParameter& p : known) names.push_back(p.name);
@@ -138,7 +138,6 @@ YearsAnswer answer_years(const YearsRequest& request, SummaryQuery& summaries,
               fmt::format("elements: the history has no {}{}", name, did_you_mean(name, names))};
     if (at != known.end()) chosen.push_back(*at);
   }
-  const std::optional<HistoryExtent> all = history_extent(summaries);
   HistorySpan span;
   if (all) {
     const HistoryExtent asked = asked_span(request, *all);

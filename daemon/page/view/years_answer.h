@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/monitor/history/history_points.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "daemon/monitor/history/weather_effects.h"
 
@@ -44,8 +45,9 @@ struct YearsAnswer {
   std::string text;
 };
 
-/// Answers a request from an open history: docs/dashboard.md, Day, month, year.
+/// Answers a request from an open history: docs/dashboard.md, Day, month, year. all: what
+/// history_extent() of these summaries returns.
 YearsAnswer answer_years(const YearsRequest& request, SummaryQuery& summaries,
-                         const WeatherModel& model);
+                         const std::optional<HistoryExtent>& all, const WeatherModel& model);
 
 }  // namespace framewatch::daemon

@@ -18,9 +18,8 @@ namespace {
 constexpr unsigned kNoHistory = 503;  // HTTP
 constexpr std::int64_t kTryAgain_us = 60 * kSecond_us;
 
-LossFollower follower_of(Quantity quantity, const Config& config) {
-  LossFollower out(quantity, config.watch ? config.watch->life : estimator::LifeBudget(),
-                   config.pipeline.options.window_s, followed_period_s(*config.history));
+LossFollower learner_of(Quantity quantity, const Config& config) {
+  LossFollower out = follower_of(quantity, config);
   out.keep_weather();
   return out;
 }
@@ -37,7 +36,7 @@ void join(WeatherEffects more, WeatherEffects& effects) {
 
 WeatherLearner::WeatherLearner(const Config& config)
     : config_(config),
-      followers_{follower_of(Quantity::stiffness, config), follower_of(Quantity::damping, config)},
+      followers_{learner_of(Quantity::stiffness, config), learner_of(Quantity::damping, config)},
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 WeatherModel WeatherLearner::model(std::int64_t end_us) {
@@ -141,7 +140,7 @@ YearsAnswer YearsDesk::answer(const YearsRequest& request) {
   if (const std::string why = summaries.open(config_.history->directory); !why.empty())
     return {kNoHistory, "the history cannot be read: " + why};
   const std::optional<HistoryExtent> all = history_extent(summaries);
-  return answer_years(request, summaries, all ? learner_.model(all->end_us) : WeatherModel());
+  return answer_years(request, summaries, all, all ? learner_.model(all->end_us) : WeatherModel());
 }
 
 }  // namespace framewatch::daemon

@@ -19,7 +19,7 @@ WeatherSettings covariate(const std::string& field, const std::string& time_fiel
   return out;
 }
 
-/// Returns the value; fails if there is none.
+/// Returns the value that read_mqtt_payload() finds. The test fails if it finds none.
 double value(const std::string& payload, const WeatherSettings& of) {
   std::string problem;
   const auto out = read_mqtt_payload(payload, of, problem);

@@ -61,7 +61,7 @@ class YearsAnswers : public testing::Test {
   YearsAnswer answer(const YearsRequest& request, const WeatherModel& model = {}) const {
     SummaryQuery summaries;
     EXPECT_EQ(summaries.open(config_.history->directory), "");
-    return answer_years(request, summaries, model);
+    return answer_years(request, summaries, history_extent(summaries), model);
   }
   static YearsRequest of(const std::vector<std::string>& elements) {
     YearsRequest out;
@@ -117,7 +117,7 @@ TEST_F(YearsAnswers, HaveTheElementItsWeatherEventsAndNotes) {
   EXPECT_EQ(j["model"]["state"], "fitting");
   EXPECT_EQ(j["weather"][0]["name"], "outside_degc");
   EXPECT_NEAR(j["weather"][0]["mean"][30], degc(30), 1e-4);
-  // Of too many events the gravest are shown, and none from outside of the span.
+  // The answer has the gravest events of the span, and says how many there are in all.
   EXPECT_EQ(j["events"].size(), 200u);
   EXPECT_EQ(j["events_in_all"], 251);
   EXPECT_EQ(j["events"][0]["message"], "it lost <b>4 %</b>");
@@ -158,7 +158,7 @@ TEST_F(YearsAnswers, SayThatThereIsNothing) {
   test::StoredSummaries(directory_.path("empty"));
   SummaryQuery summaries;
   ASSERT_EQ(summaries.open(directory_.path("empty")), "");
-  const YearsAnswer got = answer_years(of({"kx_1_y1"}), summaries, {});
+  const YearsAnswer got = answer_years(of({"kx_1_y1"}), summaries, history_extent(summaries), {});
   ASSERT_EQ(got.code, 200u) << got.text;
   j = json::parse(got.text);
   EXPECT_TRUE(j["first_us"].is_null());
