@@ -113,13 +113,14 @@ py::tuple replay(const Building& building, const std::vector<std::string>& paths
 py::dict diagnose(const Building& building, const std::vector<std::string>& train,
                   const std::vector<std::string>& held_out, const std::vector<std::string>& without,
                   int threads, const std::string& force, bool displacement, bool prescribed,
-                  py::object progress) {
+                  double limit_s, py::object progress) {
   daemon::DiagnoseArguments arguments;
   arguments.component = {force, displacement, prescribed};
   arguments.train = train;
   arguments.holdout = held_out;
   arguments.without = without;
   arguments.threads = threads;
+  arguments.limit_s = limit_s;
   Interrupts interrupts(std::move(progress));
   std::string json, text, page;
   run_beside(interrupts, [&](Reports& reports) {

@@ -183,6 +183,8 @@ void add_reproduce(CommandList& commands) {
   commands.set_action(command, [&arguments] { return reproduce(arguments); });
 }
 
+constexpr double kDiagnoseLimit_s = 300;  ///< as long as a person waits for an answer
+
 void add_diagnose(CommandList& commands) {
   DiagnoseArguments& arguments = commands.arguments<DiagnoseArguments>();
   CLI::App* command = commands.add(
@@ -223,6 +225,13 @@ void add_diagnose(CommandList& commands) {
       ->add_option("--threads", arguments.threads,
                    "largest number of threads; does not change the result")
       ->check(CLI::Range(1, 256));
+  arguments.limit_s = kDiagnoseLimit_s;
+  command
+      ->add_option("--limit", arguments.limit_s,
+                   "longest time, s: the search ends with what it has found, and says what it did "
+                   "not do (default 300; 0: no limit)")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--quiet", arguments.quiet, "print no progress and no summary");
   add_max_size(command);
   commands.set_action(command, [&arguments] { return diagnose_command(arguments); });

@@ -168,7 +168,7 @@ def diagnose(
     config: Union[Building, Path], *, train: Union[Path, Sequence[Path]],
     held_out: Union[Path, Sequence[Path]], without: Iterable[str] = (), threads: int = 0,
     force: str = "", displacement: bool = False, prescribed: bool = False,
-    progress: Optional[Progress] = None,
+    limit_s: float = 0, progress: Optional[Progress] = None,
 ) -> Diagnosis:
     """Finds why a linear model does not repeat a building's records, as `framewatch diagnose` does.
 
@@ -179,6 +179,8 @@ def diagnose(
         does not depend on it.
     force, displacement, prescribed: of a component test (docs/force.md): the column of the force,
         whether floor 1 measures displacement, whether the motion is prescribed.
+    limit_s: longest time of the search, s; it then ends with what it has found, and not_done says
+        what it did not do. 0: no limit, so that the result does not depend on the machine.
 
     Takes minutes. Ctrl-C or an exception of `progress` ends it within seconds.
     """
@@ -186,7 +188,7 @@ def diagnose(
     return Diagnosis._of(
         _core.diagnose(
             building, _paths(train), _paths(held_out), list(without), threads,
-            force, displacement, prescribed, _callable(progress),
+            force, displacement, prescribed, limit_s, _callable(progress),
         )
     )
 

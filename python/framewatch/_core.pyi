@@ -73,5 +73,6 @@ def diagnose(
     force: str,
     displacement: bool,
     prescribed: bool,
+    limit_s: float,
     progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, str]: ...

@@ -70,6 +70,7 @@ class Diagnosis:
     effects: what was found, in order. places: the likeliest places.
     gap_before, gap_after, noise_floor: of the linear model, of the model with the effects, and of
         a perfect one.
+    not_done: what the search did not do within its limit of time; empty: it did all.
     text: what `framewatch diagnose` prints. report_html: its page.
     json: all of it, schema framewatch.diagnosis/1 (docs/formats.md).
     """
@@ -81,6 +82,7 @@ class Diagnosis:
     gap_before: Gap
     gap_after: Gap
     noise_floor: Gap
+    not_done: list[str]
     text: str
     report_html: str
     json: dict[str, Any]
@@ -101,6 +103,7 @@ class Diagnosis:
             gap_before=_gap(all_of_it["gap"]["before"]),
             gap_after=_gap(all_of_it["gap"]["after"]),
             noise_floor=_gap(all_of_it["gap"]["noise_floor"]),
+            not_done=all_of_it["search"]["not_done"],
             text=result["text"],
             report_html=result["report_html"],
             json=all_of_it,

@@ -105,6 +105,14 @@ class Diagnose(unittest.TestCase):
         self.assertEqual({thread for _, _, thread in told}, {threading.get_ident()})
         self.assertTrue(all(0 <= share <= 1 for _, share, _ in told))
 
+    def test_limit(self):
+        found = self.diagnose(limit_s=1e-6)
+        self.assertEqual(found.verdict, "unexplained")
+        self.assertEqual(found.effects, [])
+        self.assertEqual(len(found.not_done), 10)
+        self.assertIn("--limit", found.text)
+        self.assertEqual(self.diagnose(limit_s=1e6).not_done, [])
+
     def test_callback_that_throws(self):
         def tell(*_):
             raise KeyError("enough")

@@ -171,6 +171,13 @@ class Errors(Shaken):
             ),
             "ghost", "no effect has this name",
         )
+        for limit_s in (-1, float("nan")):
+            self.refused(
+                lambda: framewatch.diagnose(  # pylint: disable=cell-var-from-loop
+                    self.building, train=self.record, held_out=self.record, limit_s=limit_s
+                ),
+                "limit of the search", "0 or more",
+            )
 
     def test_wrong_arguments_are_type_errors(self):
         for call in (

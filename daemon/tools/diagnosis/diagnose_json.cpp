@@ -128,6 +128,7 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   Json out{{"schema", "framewatch.diagnosis/1"}, {"verdict", verdict_word(d.verdict)}};
   if (!d.reason.empty()) out["reason"] = d.reason;
+  out["search"] = {{"complete", d.not_done.empty()}, {"not_done", d.not_done}};
   out["gap"] = {{"before", both(o, d.before, false)},
                 {"after", both(o, d.after, false)},
                 {"noise_floor", both(o, d.before, true)},

@@ -293,7 +293,8 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
   const std::vector<LawMotion> motions = law_motions(o);
   std::string body = "<p class=\"verdict\">" + html_text(verdict_sentence(o)) + "</p>\n" +
                      html_paragraph(gap_sentence(o));
-  body += html_paragraph(damping_sentence(o)) + html_paragraph(noise_sentence(o));
+  body += html_paragraph(limit_sentence(o)) + html_paragraph(damping_sentence(o)) +
+          html_paragraph(noise_sentence(o));
   std::string items;
   for (const estimator::FoundEffect& f : d.effects)
     items += "<li>" +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/diagnosis/diagnose_run.h"
 
+#include <chrono>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -75,6 +76,12 @@ estimator::Diagnosis diagnose_in_threads(const DiagnoseArguments& a,
     step = {what, done, then};
     tell(what, done);
   };
+  if (a.limit_s > 0)
+    options.is_over = [start = std::chrono::steady_clock::now(),
+                       limit_s = a.limit_s](double share) {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() >
+             share * limit_s;
+    };
   return diagnose(input.plant, input.segments, options);
 }
 
@@ -89,6 +96,8 @@ std::unique_ptr<DiagnosisRun> run_diagnosis(const Config& config, const Diagnose
   estimator::DiagnosisOptions options;
   options.holdout_from = a.event.empty() ? a.train.size() : 1;
   options.without = excluded_kinds(a.without, problems);
+  if (!(a.limit_s >= 0))
+    problems.push_back(fmt::format("limit of the search: must be 0 or more, not {}", a.limit_s));
   std::vector<DiagnoseRecord> records = read_records(config, a, problems);
   if (!problems.empty()) return nullptr;
 

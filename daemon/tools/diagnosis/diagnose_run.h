@@ -24,7 +24,8 @@ struct DiagnoseArguments {
   std::string out;     ///< directory for diagnosis.json, report.html, model.toml
   std::vector<std::string> without;  ///< names of effects to exclude
   estimator::ComponentTest component;
-  int threads = 0;  ///< 0: as many as the machine has
+  int threads = 0;     ///< 0: as many as the machine has
+  double limit_s = 0;  ///< of the search; 0: none
   bool quiet = false;
 };
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
@@ -318,9 +319,20 @@ std::string damping_sentence(const DiagnoseOutput& o) {
                               ratios + ").";
 }
 
+std::string limit_sentence(const DiagnoseOutput& o) {
+  const std::vector<std::string>& not_done = o.diagnosis.not_done;
+  if (not_done.empty()) return "";
+  return fmt::format(
+      "The limit of time ended the diagnosis. Not done, or only in part: {}. Give it more time "
+      "with "
+      "--limit.",
+      fmt::join(not_done, "; "));
+}
+
 std::string diagnosis_text(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
-  std::vector<std::string> lines{gap_sentence(o), damping_sentence(o), noise_sentence(o)};
+  std::vector<std::string> lines{gap_sentence(o), limit_sentence(o), damping_sentence(o),
+                                 noise_sentence(o)};
   for (const estimator::FoundEffect& f : d.effects)
     lines.push_back(fmt::format("{}, {}: {}; it closes {:.0f} % of the gap",
                                 grade_word(grade_of(f)), effect_words(o, f), confidence_words(f),

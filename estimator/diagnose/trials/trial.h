@@ -47,6 +47,9 @@ struct TrialContext {
   const Parallel& parallel;
   std::function<void(const std::string&)>
       progress;  ///< called with a description of the current work
+  /// Gets every trial that has a fit, also those whose comparison the end of the search interrupts;
+  /// nullptr: nothing is kept.
+  std::vector<Trial>* fitted = nullptr;
 };
 
 /// Returns true if an effect is an axis' freed gain or clock instead of one of the model's effects.

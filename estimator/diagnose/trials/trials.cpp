@@ -172,6 +172,62 @@ void refit_from_present(const TrialContext& c, const std::vector<Fitted>& kept,
   });
 }
 
+/// Returns the candidates as trials, with their free runs.
+std::vector<Trial> trials_of_runs(const TrialContext& c, const std::vector<Fitted>& kept,
+                                  const std::vector<FitResult>& runs) {
+  std::vector<Trial> out;
+  for (std::size_t at = 0; at < kept.size(); ++at) {
+    const Fitted& f = kept[at];
+    const bool good = runs[at].good;
+    out.push_back(trial_of(c, *f.candidate, good ? runs[at] : f.fit,
+                           good ? TrialOutcome::fitted : TrialOutcome::diverged));
+    if (good && !may_be_named(c, out.back())) out.back().outcome = TrialOutcome::other_law;
+  }
+  return out;
+}
+
+/// Returns "bouc_wen at frame y1, story 2": the candidate with the least cost.
+std::string best_of(const TrialContext& c, const std::vector<Fitted>& kept,
+                    const std::vector<FitResult>& runs) {
+  const FitResult* best = nullptr;
+  std::string out;
+  for (std::size_t at = 0; at < kept.size(); ++at) {
+    if (!runs[at].good || (best != nullptr && best->cost <= runs[at].cost)) continue;
+    best = &runs[at];
+    const Candidate& candidate = *kept[at].candidate;
+    const Plant& plant = c.fitter.plant();
+    out = std::string(name_of(candidate.kind)) + " at " +
+          place_text(candidate.place, plant.structure, plant.axes);
+  }
+  return out;
+}
+
+/// Fits the free runs of `kept` in parallel. May add runs of friction to both lists.
+void fit_runs(const TrialContext& c, const std::vector<Candidate>& candidates,
+              std::vector<Fitted>& kept, std::vector<FitResult>& runs) {
+  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    const FitResult from = free_run_start(c.fitter, kept[at].fit);
+    FitOptions options = full_fit(from.model);
+    options.max_steps = kTrialSteps;
+    options.holds_tolerated = c.fitter.plant().is_large();
+    runs[at] = c.fitter.fit(from.model, from.motion, options);
+  });
+  if (const std::string best = best_of(c, kept, runs); !best.empty())
+    c.progress(std::to_string(kept.size()) + " laws, so far the best: " + best);
+  if (!c.fitter.plant().is_large() && least_cost(c, runs) > kNothingFound * c.now.cost)
+    refit_friction(c, candidates, kept, runs);
+  const double least = least_cost(c, runs);
+  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!runs[at].good || runs[at].cost > kCostLimit * least || runs[at].steps != kTrialSteps)
+      return;
+    const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion, full_fit(runs[at].model));
+    if (on.good && on.cost < runs[at].cost) runs[at] = on;
+  });
+  refit_from_present(c, kept, runs);
+}
+
 /// Fits candidates in parallel: all under the measured motion, then the best of each place with
 /// free runs.
 std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& candidates) {
@@ -188,32 +244,18 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   std::vector<Trial> trials;
   std::vector<Fitted> kept = worth_a_free_run(c, std::move(first), trials);
   std::vector<FitResult> runs(kept.size());
-  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
-    const auto at = static_cast<std::size_t>(i);
-    const FitResult from = free_run_start(c.fitter, kept[at].fit);
-    FitOptions options = full_fit(from.model);
-    options.max_steps = kTrialSteps;
-    options.holds_tolerated = c.fitter.plant().is_large();
-    runs[at] = c.fitter.fit(from.model, from.motion, options);
-  });
-  if (!c.fitter.plant().is_large() && least_cost(c, runs) > kNothingFound * c.now.cost)
-    refit_friction(c, candidates, kept, runs);
-  const double least = least_cost(c, runs);
-  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (!runs[at].good || runs[at].cost > kCostLimit * least || runs[at].steps != kTrialSteps)
-      return;
-    const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion, full_fit(runs[at].model));
-    if (on.good && on.cost < runs[at].cost) runs[at] = on;
-  });
-  refit_from_present(c, kept, runs);
-  for (std::size_t at = 0; at < kept.size(); ++at) {
-    const Fitted& f = kept[at];
-    const bool good = runs[at].good;
-    trials.push_back(trial_of(c, *f.candidate, good ? runs[at] : f.fit,
-                              good ? TrialOutcome::fitted : TrialOutcome::diverged));
-    if (good && !may_be_named(c, trials.back())) trials.back().outcome = TrialOutcome::other_law;
+  const auto keep = [&] {
+    std::vector<Trial> tried = trials_of_runs(c, kept, runs);
+    if (c.fitted != nullptr) append(*c.fitted, tried);
+    return tried;
+  };
+  try {
+    fit_runs(c, candidates, kept, runs);
+  } catch (...) {  // the search is over
+    (void)keep();
+    throw;
   }
+  append(trials, keep());
   return trials;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -24,6 +25,7 @@
 #include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/trials/trial_names.h"
 #include "estimator/diagnose/trials/trials.h"
+#include "estimator/diagnose/trials/wrong_labels.h"
 #include "estimator/diagnose/verdict/effect_search.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
 #include "estimator/diagnose/verdict/verdict.h"
@@ -61,104 +63,6 @@ std::vector<Trial> trials_of_combined_laws(const TrialContext& c, const EffectPl
   return out;
 }
 
-constexpr double kFarOff = 10;    ///< misfit over the expected, below which labels are not doubted
-constexpr double kMaxLeft = 0.3;  ///< of the cost, with the right labels
-constexpr std::size_t kLabelsFitted = 6;
-constexpr int kLabelSteps = 8;
-constexpr double kTurned = -2;  ///< relative gain error of a channel with reversed sign
-
-/// Returns the design with the effects of the present model.
-Model from_the_design(const TrialContext& c) {
-  Model out = initial_model(c.fitter.plant());
-  out.effects = c.now.model.effects;
-  out.free_gain = c.now.model.free_gain;
-  out.free_clock = c.now.model.free_clock;
-  for (const int axis : out.free_gain) out.gain[axis] = c.now.model.gain[axis];
-  for (const int axis : out.free_clock) out.clock_s[axis] = c.now.model.clock_s[axis];
-  return out;
-}
-
-Trial turned(const Model& from, int axis) {
-  Trial out;
-  out.kind = EffectKind::polarity;
-  out.place.kind = PlaceKind::channel;
-  out.place.channel = axis;
-  out.model = from;
-  out.model.free_gain.push_back(axis);
-  out.model.gain[axis] = kTurned;
-  return out;
-}
-
-Trial exchanged(const Model& from, int axis, int other) {
-  Trial out;
-  out.kind = EffectKind::swapped;
-  out.place.kind = PlaceKind::channel_pair;
-  out.place.channel = axis;
-  out.place.with_channel = other;
-  ModelEffect swap;
-  swap.form = LawForm::swapped;
-  swap.place = out.place;
-  out.model = from;
-  out.model.effects.push_back(swap);
-  return out;
-}
-
-std::vector<Trial> all_labels(const TrialContext& c) {
-  const Model from = from_the_design(c);
-  const auto axes = static_cast<int>(c.fitter.plant().axis_count());
-  std::vector<Trial> out;
-  for (int axis = 0; axis < axes; ++axis) {
-    if (std::find(from.free_gain.begin(), from.free_gain.end(), axis) == from.free_gain.end())
-      out.push_back(turned(from, axis));
-    for (int other = axis + 1; other < axes; ++other) out.push_back(exchanged(from, axis, other));
-  }
-  std::erase_if(out, [&](const Trial& t) {
-    return std::find(c.without.begin(), c.without.end(), t.kind) != c.without.end();
-  });
-  return out;
-}
-
-void sort_by_cost(std::vector<Trial>& trials) {
-  std::stable_sort(trials.begin(), trials.end(),
-                   [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
-}
-
-/// Continues the fit of every trial, at most `steps`. Trials that cannot be fitted get infinite
-/// cost.
-void continue_fits(const TrialContext& c, int steps, std::vector<Trial>& trials) {
-  run_all(c.parallel, static_cast<int>(trials.size()), [&](int i) {
-    Trial& t = trials[static_cast<std::size_t>(i)];
-    FitOptions options;
-    options.max_steps = steps;
-    const FitResult fit = c.fitter.fit(t.model, {}, options);
-    t.cost = fit.good ? fit.cost : std::numeric_limits<double>::infinity();
-    if (!fit.good) return;
-    t.misfit = fit.misfit;
-    t.model = fit.model;
-  });
-  sort_by_cost(trials);
-}
-
-/// Tries channels with reversed sign, also at the base, and pairs of channels with exchanged names.
-/// Runs before anything else, and only if the model is far from the records. Returns the trials,
-/// best first, or an empty list unless the best one removes most of the misfit. Not for large
-/// buildings, where exchanged channels are found among the pairs of places.
-std::vector<Trial> wrong_labels(const TrialContext& c) {
-  const Plant& plant = c.fitter.plant();
-  const double expected = c.fitter.expected(c.now.model);
-  if (plant.is_large() || plant.equations() == 1 || plant.prescribed ||
-      c.now.total_misfit() < kFarOff * expected)
-    return {};
-  std::vector<Trial> trials = all_labels(c);
-  continue_fits(c, 0, trials);
-  if (trials.size() > kLabelsFitted) trials.resize(kLabelsFitted);
-  continue_fits(c, kLabelSteps, trials);
-  std::erase_if(trials, [](const Trial& t) { return !(t.cost < 1e300); });
-  if (trials.empty() || trials.front().cost > kMaxLeft * c.now.cost) return {};
-  for (Trial& t : trials) t.fraction = (c.now.cost - t.cost) / std::max(c.now.cost - expected, 1.0);
-  return trials;
-}
-
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 constexpr double kWithBoth = 0.95;  ///< gap with a law over that without
 constexpr double kMaxGone = 0.1;    ///< of the misfit beyond noise that remains
@@ -171,9 +75,9 @@ class Diagnoser {
         segments_(segments),
         progress_(options.progress, options.parallel),
         options_(options),
-        fitter_(plant, segments, options.tolerances, options.within),
+        fitter_(plant, segments, options.tolerances, until_over(is_over(), options.within)),
         search_(fitter_, segments, options_, progress_, out_) {
-    options_.parallel = progress_.counted();
+    options_.parallel = until_over(is_over(), progress_.counted());
   }
 
   Diagnosis run(std::vector<FoundEffect> ramps) {
@@ -188,37 +92,87 @@ class Diagnoser {
     }
     search_.complete(now);
     search_.set_linear(now);
-    progress_.begin("channel labels", 0.02, 0.05);
-    const std::vector<Trial> labels = wrong_labels(search_.context_of(now));
-    if (!labels.empty()) search_.adopt(labels, now);
-    search_.run(now);
-    progress_.begin("checks", 0.75, 0.8);
-    withdraw_other_kind(now);
-    const bool several = find_several(now) && !find_further(now);
-    if (out_.effects.empty()) name_nearest(now);
-    find_combined_laws(now);
-    if (!out_.effects.empty() && !several) {
-      drop_redundant(now);
-      polish(now);
-    }
+    search_.settle(now);
+    if (!in_time(kSearchShare, [&] { search(now); })) search_.end_early(now);
     name_by_shape(search_.context_of(now), out_.effects);
     out_.ratio_after = search_.ratio(now);
     out_.noise_corner_hz = segments_.front().corner_hz;
-    progress_.begin("models", 0.8, 0.9);
-    set_models(now.model);
-    mark_approximate(fitter_, out_);
-    set_errors(fitter_, out_.model, now.motion, out_.effects);
-    set_errors(fitter_, out_.model, now.motion, out_.known);
-    out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
-    progress_.begin("gaps", 0.9, 1);
-    set_gaps(fitter_, options_, out_);
-    if (ramps.empty() && withdraw_worse(options_.holdout_from, out_)) set_models(out_.linear);
-    set_leading(fitter_, options_, out_);
+    finish(now, ramps);
     judge(fitter_, out_);
     return out_;
   }
 
  private:
+  /// Returns the question that ends work within in_time().
+  std::function<bool()> is_over() const {
+    if (!options_.is_over) return {};
+    return [this] { return share_ > 0 && options_.is_over(share_); };
+  }
+
+  /// Does the work until `share` of the time has passed. Returns false if that ended it.
+  template <typename Work>
+  bool in_time(double share, Work work) {
+    share_ = share;
+    bool done = true;
+    try {
+      work();
+    } catch (const SearchOver&) {
+      done = false;
+    }
+    share_ = 0;
+    return done;
+  }
+
+  /// Fits the models of the result and sets their errors and gaps. What there is no time for is
+  /// taken from the search.
+  void finish(const FitResult& now, const std::vector<FoundEffect>& ramps) {
+    const auto in_time_or_told = [&](const char* what, const std::function<void()>& work) {
+      const bool done = in_time(1, work);
+      if (!done) out_.not_done.emplace_back(what);
+      return done;
+    };
+    progress_.begin("models", 0.8, 0.9);
+    if (!in_time_or_told("models with masses, gains and clocks as declared",
+                         [&] { set_models(now.model); }))
+      out_.model = out_.declared = now.model;
+    mark_approximate(fitter_, out_);
+    (void)in_time_or_told("errors of the values", [&] {
+      set_errors(fitter_, out_.model, now.motion, out_.effects);
+      set_errors(fitter_, out_.model, now.motion, out_.known);
+    });
+    out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
+    progress_.begin("gaps", 0.9, 1);
+    if (!in_time_or_told("models of the training records alone",
+                         [&] { set_gaps(fitter_, options_, out_); }))
+      set_gaps_of_all(fitter_, options_.holdout_from, out_);
+    if (ramps.empty() && withdraw_worse(options_.holdout_from, out_) &&
+        !in_time(1, [&] { set_models(out_.linear); }))
+      out_.model = out_.declared = out_.linear;
+    (void)in_time_or_told("laws that come near", [&] { set_leading(fitter_, options_, out_); });
+  }
+
+  /// Finds the effects. Throws SearchOver if it is over before.
+  void search(FitResult& now) {
+    progress_.begin("channel labels", 0.02, 0.05);
+    const std::vector<Trial> labels = wrong_labels(search_.context_of(now));
+    if (!labels.empty()) search_.adopt(labels, now);
+    search_.begin_part(SearchPart::single);
+    search_.run(now);
+    search_.begin_part(SearchPart::several);
+    progress_.begin("checks", 0.75, 0.8);
+    withdraw_other_kind(now);
+    search_.settle(now);
+    const bool several = find_several(now) && !find_further(now);
+    name_nearest(now);
+    search_.begin_part(SearchPart::redundant);
+    search_.settle(now);
+    find_combined_laws(now);
+    if (!out_.effects.empty() && !several) {
+      drop_redundant(now);
+      polish(now);
+    }
+  }
+
   FitResult fit(const Model& model, const std::vector<MatrixXcd>& motion, int steps) const {
     return fitter_.fit(model, motion, thorough(model, steps));
   }
@@ -272,14 +226,14 @@ class Diagnoser {
     const auto judged_of = [&](const std::vector<Model>& starts) {
       return judged_fit(fitter_, starts, kPolishSteps, fitter_.within());
     };
-    JudgedFit judged;
+    JudgedFit linear, judged;
     run_all(options_.parallel, 2, [&](int i) {
-      if (i == 0 && judges_linear)
-        out_.linear = judged_of(linear_starts(plant_, out_.linear)).model;
+      if (i == 0 && judges_linear) linear = judged_of(linear_starts(plant_, out_.linear));
       if (i == 1 && judges && !out_.effects.empty()) judged = judged_of({model});
     });
+    if (judges_linear) out_.linear = linear.model;
     if (judges) {
-      if (out_.effects.empty()) judged = judged_of({out_.linear});
+      if (out_.effects.empty()) judged = judges_linear ? linear : judged_of({out_.linear});
       out_.model = judged.model;
       segments = with_model_error(plant_, segments_, std::min(judged.gap, 1.0));
     }
@@ -364,6 +318,7 @@ class Diagnoser {
   const Plant& plant_;
   std::vector<RecordSegment>& segments_;  ///< with the corner frequency of their noise
   SearchProgress progress_;
+  double share_ = 0;          ///< DiagnosisOptions::is_over is asked with it; 0: not asked
   DiagnosisOptions options_;  ///< `parallel` reports progress
   Fitter fitter_;
   Diagnosis out_;

@@ -51,6 +51,9 @@ struct Diagnosis {
       after;  ///< of each segment, for models fitted to the training segments alone
   /// The training segments alone do not determine the effects, so `after` is that of `model`.
   bool after_of_all = false;
+  /// What was not done, or only in part, because the time was over (DiagnosisOptions::is_over), in
+  /// its order. If the search is among it, no name is more likely right than wrong.
+  std::vector<std::string> not_done;
   std::vector<FoundEffect> known;            ///< effects of the configuration, fitted again
   std::vector<FoundEffect> effects;          ///< found, in their order
   std::vector<WhereEntry> where;             ///< the likeliest places, best first
@@ -65,6 +68,10 @@ struct Diagnosis {
 /// share when the work that begins now is done.
 using ReportProgress = std::function<void(const std::string& what, double done, double then)>;
 
+/// Share of the time after which a search ends: the models, errors and gaps of a large building
+/// take about a third of a whole diagnosis.
+inline constexpr double kSearchShare = 0.7;
+
 struct DiagnosisOptions {
   Tolerances tolerances;
   int rounds = 3;
@@ -74,6 +81,10 @@ struct DiagnosisOptions {
   Parallel parallel;                ///< the result does not depend on it
   Parallel within;          ///< for the pieces of one call of `parallel`, and between its calls
   ReportProgress progress;  ///< between the calls of `parallel`
+  /// Returns true once this share of the time for the diagnosis has passed. Asked before every
+  /// piece of parallel work, by several threads at once. The search ends at kSearchShare with what
+  /// it has found. At 1, models and gaps are left as the search fitted them. Empty: no limit.
+  std::function<bool(double share)> is_over;
 };
 
 /// Describes the signal that each place needs: its time, frequencies and size. For the first

@@ -2,7 +2,9 @@
 #include "estimator/diagnose/verdict/effect_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -51,7 +53,33 @@ std::vector<Trial> leads_of(const std::vector<Trial>& trials) {
   return out;
 }
 
+/// Words for SearchPart, in its order.
+constexpr std::array kPartWords = {
+    "exchanged and reversed channels",
+    "effects one after the other",
+    "two effects, neither of which is found without the other",
+    "effects with free damping of the modes",
+    "rivals in place of the effects found",
+    "several effects that act at once",
+    "effects that are not needed",
+};
+
 }  // namespace
+
+Parallel until_over(std::function<bool()> is_over, Parallel parallel) {
+  if (!is_over) return parallel;
+  return [is_over = std::move(is_over), parallel = std::move(parallel)](
+             int count, const std::function<void(int)>& work) {
+    run_all(parallel, count, [&](int i) {
+      if (is_over()) throw SearchOver();
+      work(i);
+    });
+  };
+}
+
+std::vector<std::string> parts_not_done(SearchPart part) {
+  return {kPartWords.begin() + static_cast<std::ptrdiff_t>(part), kPartWords.end()};
+}
 
 SearchProgress::SearchProgress(ReportProgress report, Parallel parallel)
     : report_(std::move(report)), parallel_(std::move(parallel)) {}
@@ -95,8 +123,11 @@ void EffectSearch::run(FitResult& now) {
   rounds(now, 0);
   // A component has one place; in a large building every round takes long.
   const bool more = fitter_.plant().equations() > 1 && !fitter_.plant().is_large();
+  begin_part(SearchPart::two_at_once);
   if (more && out_.effects.empty()) look_ahead(now);
+  begin_part(SearchPart::free_damping);
   if (out_.effects.empty()) search_with_free_damping(now);
+  begin_part(SearchPart::rivals);
   if (more) replace_laws(now);
   if (by_place_) doubt_all();
   if (!out_.effects.empty()) return;
@@ -117,9 +148,36 @@ void EffectSearch::replace_laws(FitResult& now) {
 
 void EffectSearch::rounds(FitResult& now, std::size_t first) {
   for (std::size_t round = first; round < static_cast<std::size_t>(options_.rounds); ++round) {
-    if (!one_round(now, round)) return;
-    complete(now);
+    const bool found = one_round(now, round);
+    if (found) complete(now);
+    if (!provisional_) settle(now);
+    if (!found) return;
   }
+}
+
+void EffectSearch::settle(const FitResult& now) {
+  settled_ = {out_, now, segments_.front().corner_hz};
+}
+
+void EffectSearch::end_early(FitResult& now) {
+  // The places of the present round are known before its trials are compared.
+  std::vector<WhereEntry> where = std::move(out_.where), map = std::move(out_.map);
+  out_ = settled_->out;
+  now = settled_->now;
+  set_corner(settled_->corner_hz, segments_);
+  if (out_.where.empty()) {
+    out_.where = std::move(where);
+    out_.map = std::move(map);
+  }
+  out_.not_done = parts_not_done(part_);
+  doubt_all();
+  if (!out_.effects.empty() || !out_.rejected.empty()) return;
+  std::erase_if(fitted_, [](const Trial& t) { return t.outcome != TrialOutcome::fitted; });
+  std::stable_sort(fitted_.begin(), fitted_.end(),
+                   [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
+  const double to_explain = now.cost - fitter_.expected(now.model);
+  for (Trial& t : fitted_) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1.0);
+  out_.rejected = without_duplicates(fitted_);
 }
 
 /// A missing effect and the form of the damping may hide each other. Searches again with free
@@ -130,7 +188,9 @@ void EffectSearch::search_with_free_damping(FitResult& now) {
   Diagnosis before = out_;
   out_.where.clear();
   to_beat_ = alone_;
+  provisional_ = true;
   rounds(free, 0);
+  provisional_ = false;
   if (!out_.effects.empty()) {
     now = std::move(free);
     return;
@@ -145,16 +205,18 @@ void EffectSearch::look_ahead(FitResult& now) {
   const Diagnosis before = out_;
   const double alone = alone_;
   const double corner_hz = segments_.front().corner_hz;
+  provisional_ = true;
   for (const Trial& lead : leads_of(before.rejected)) {
     FitResult with = now;
     if (explains_with_second(lead, with)) {
       now = std::move(with);
-      return;
+      break;
     }
     out_ = before;
     alone_ = alone;
     set_corner(corner_hz, segments_);
   }
+  provisional_ = false;
 }
 
 bool EffectSearch::explains_with_second(const Trial& lead, FitResult& now) {
@@ -238,12 +300,17 @@ double EffectSearch::ratio(const FitResult& now) const {
   return now.total_misfit() / fitter_.expected(now.model);
 }
 
-TrialContext EffectSearch::context_of(const FitResult& now) const {
-  return {fitter_, now, options_.without, options_.parallel,
-          [this](const std::string& what) { progress_.describe(what); }};
+TrialContext EffectSearch::context_of(const FitResult& now) {
+  return {fitter_,
+          now,
+          options_.without,
+          options_.parallel,
+          [this](const std::string& what) { progress_.describe(what); },
+          provisional_ ? nullptr : &fitted_};
 }
 
 bool EffectSearch::one_round(FitResult& now, std::size_t round) {
+  fitted_.clear();
   const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
   progress_.begin("places", shares.where, shares.trials, {0.4, 0.35});
   Located located = locate(fitter_, now, options_.parallel);

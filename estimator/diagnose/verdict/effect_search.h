@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,18 @@
 #include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
+
+/// Thrown by a piece of work when the search is over.
+struct SearchOver {};
+
+/// Returns `parallel`, whose pieces throw SearchOver once `is_over` returns true.
+Parallel until_over(std::function<bool()> is_over, Parallel parallel);
+
+/// Parts of a search, in their order.
+enum class SearchPart { labels, single, two_at_once, free_damping, rivals, several, redundant };
+
+/// Returns what `part` and the parts after it would have done, the first one in part.
+std::vector<std::string> parts_not_done(SearchPart part);
 
 /// Shares of the search at which a round starts to locate, starts to fit laws, and ends.
 struct RoundShares {
@@ -80,9 +94,18 @@ class EffectSearch {
     for (FoundEffect& e : out_.effects) e.confidence = std::min(e.confidence, kDoubtful);
   }
   double ratio(const FitResult& now) const;  ///< misfit over its expectation
-  TrialContext context_of(const FitResult& now) const;
+  TrialContext context_of(const FitResult& now);
   /// Returns Localisation::ratio of the likeliest place in the last round.
   double alone() const { return alone_; }
+
+  /// Begins a part of the search.
+  void begin_part(SearchPart part) { part_ = part; }
+  /// Keeps the present state: end_early() returns to it.
+  void settle(const FitResult& now);
+  /// Returns to the last settled state because the search is over. Says in the diagnosis what was
+  /// not done, doubts every name, and keeps the trials of the present round as rejected if nothing
+  /// is named.
+  void end_early(FitResult& now);
 
  private:
   void search_with_free_damping(FitResult& now);
@@ -111,6 +134,17 @@ class EffectSearch {
   bool by_place_ = false;   ///< the noise's corner frequency was estimated at a place, not from the
                             ///< model's residual
   double before_lead_ = 0;  ///< cost before a law that is assumed provisionally; 0: no such law
+
+  /// A state to which the search can return.
+  struct Settled {
+    Diagnosis out;
+    FitResult now;
+    double corner_hz;
+  };
+  std::optional<Settled> settled_;
+  bool provisional_ = false;   ///< the present state may be given up again
+  std::vector<Trial> fitted_;  ///< of the present round
+  SearchPart part_ = SearchPart::labels;
 };
 
 }  // namespace framewatch::estimator

@@ -156,6 +156,16 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
   }
 }
 
+void set_gaps_of_all(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
+  out.before = gaps_of(fitter, out.linear);
+  out.after = out.effects.empty() ? out.before : gaps_of(fitter, out.model);
+  out.after_of_all = true;
+  // The gaps of models with some of the effects are not known: the last one closes all of it.
+  for (FoundEffect& effect : out.effects)
+    effect.before = effect.after = mean_gap(out.before, holdout_from);
+  if (!out.effects.empty()) out.effects.back().after = mean_gap(out.after, holdout_from);
+}
+
 namespace {
 
 bool is_arbitrary(const Model& model) {

@@ -29,6 +29,9 @@ Model with_first(const Model& model, const std::vector<FoundEffect>& effects, st
 /// of models fitted by judged_fit() to the segments before `options.holdout_from`.
 void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out);
 
+/// Sets the same from the models of all segments as they are.
+void set_gaps_of_all(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out);
+
 /// Sets Diagnosis::leading from its rejected trials. Call it after set_gaps().
 void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out);
 
