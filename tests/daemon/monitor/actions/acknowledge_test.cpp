@@ -360,7 +360,8 @@ TEST(Note, NeedsATextAndATimeThatHasPassed) {
     acknowledge_t request = acknowledge_request(sort, "", text);
     request.time_us = time_us;
     std::string out;
-    EXPECT_EQ(note_of(request, "alice", kNow_us, out).has_value(), out.empty());
+    const bool kept = note_of(request, "alice", kNow_us, out).has_value();
+    EXPECT_EQ(kept, out.empty());
     return out;
   };
   EXPECT_EQ(why(kPlainNote, "x", kNow_us), "");
