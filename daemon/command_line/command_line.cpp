@@ -133,11 +133,11 @@ int run_command_line(int argc, const char* const* argv) {
       "framewatch estimates the stiffness and damping of every frame and floor panel of "
       "a\nbuilding from its accelerometers, while it moves.",
       "The file name - is standard input for reading and standard output for writing.",
-      {add_demo,    add_run,      add_replay,      add_diff,      add_compare,  add_repair,
-       add_refine,  add_modes,    add_diagnose,    add_adopt,     add_init,     add_check,
-       add_convert, add_simulate, add_reproduce,   add_report,    add_serve,    add_record,
-       add_history, add_status,   add_acknowledge, add_tell,      add_selftest, add_export,
-       add_fleet,   add_uplink,   add_help,        add_completion},
+      {add_demo,    add_run,      add_replay,      add_diff,   add_compare,   add_repair,
+       add_refine,  add_modes,    add_diagnose,    add_adopt,  add_init,      add_check,
+       add_convert, add_simulate, add_reproduce,   add_report, add_serve,     add_record,
+       add_history, add_status,   add_acknowledge, add_note,   add_tell,      add_selftest,
+       add_export,  add_fleet,    add_uplink,      add_help,   add_completion},
       {"run", "serve", "record"}};
   return run_program(program, argc, argv);
 }

@@ -83,6 +83,7 @@ void add_run(CommandList& commands);
 void add_serve(CommandList& commands);
 void add_status(CommandList& commands);
 void add_acknowledge(CommandList& commands);
+void add_note(CommandList& commands);
 void add_tell(CommandList& commands);
 void add_selftest(CommandList& commands);
 

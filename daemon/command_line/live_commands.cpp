@@ -3,6 +3,7 @@
 
 #include "daemon/command_line/command_list.h"
 #include "daemon/monitor/actions/acknowledge.h"
+#include "daemon/monitor/actions/note.h"
 #include "daemon/monitor/actions/tell_command.h"
 #include "daemon/monitor/live/run_command.h"
 #include "daemon/page/findings/status_command.h"
@@ -143,6 +144,24 @@ void add_acknowledge(CommandList& commands) {
   command->add_option("--comment", arguments.comment, "comment stored with the acknowledgement");
   command->add_option("--who", arguments.who, "name to store in addition to the user's name");
   commands.set_action(command, [&arguments] { return acknowledge_command(arguments); });
+}
+
+void add_note(CommandList& commands) {
+  NoteArguments& arguments = commands.arguments<NoteArguments>();
+  CLI::App* command = commands.add(
+      "note", "keep a note about the building in the history of the running daemon",
+      "Pages, reports and `framewatch history --events` show it. With --maintenance, the search "
+      "for\nlasting losses begins anew on that day, so that work on the building is not taken for "
+      "damage.\nExit status: 0 kept, 1 refused, 2 no answer, or bad usage or configuration. Only "
+      "the daemon's\nuser and the group of its socket may write notes.\nExample: framewatch note "
+      "\"bookshelves on floor 3\" building.toml --maintenance --at 2026-11-27");
+  command->add_option("TEXT", arguments.text, "what happened")->required();
+  add_installed_config(command, arguments.config);
+  command->add_flag("--maintenance", arguments.maintenance,
+                    "the building was changed on purpose: its mass, stiffness or damping");
+  command->add_option("--at", arguments.at, "when, UTC (default: now)")->type_name("TIME");
+  command->add_option("--who", arguments.who, "name to store in addition to the user's name");
+  commands.set_action(command, [&arguments] { return note_command(arguments); });
 }
 
 void add_tell(CommandList& commands) {

@@ -110,6 +110,11 @@ bool YearsWatch::take(double days, const std::vector<DayValue>& values) {
   return any;
 }
 
+void YearsWatch::begin_anew() {
+  std::ranges::fill(elements_, Element());
+  for (LossEvidence& series : series_) series.accept(kLevel);
+}
+
 std::optional<YearsWatch::Finding> YearsWatch::push(double day, const std::vector<DayValue>& values,
                                                     const std::vector<double>& weather) {
   weather_.push(day, weather);

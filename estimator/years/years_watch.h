@@ -52,6 +52,11 @@ class YearsWatch {
   std::optional<Finding> push(double day, const std::vector<DayValue>& values,
                               const std::vector<double>& weather);
 
+  /// Forgets the level of every element, because the building was changed on purpose, by an unknown
+  /// amount, between the day before and the next one. Keeps what was learned of the weather. Losses
+  /// that are not proven yet are forgotten too.
+  void begin_anew();
+
   /// Returns the evidence of a loss of an element or kAllAlike: the logarithm of the capital (see
   /// LossEvidence) over the one that proves it; 1: proven.
   double evidence(int element) const;

@@ -51,6 +51,12 @@ struct Acknowledgement {
 /// whom all events were acknowledged at once, so that a page can do the same with its own events.
 inline constexpr std::int64_t kAllEvents = 0;
 
+/// In place of an event's id in a request to keep a note: a remark, or that the building was
+/// changed on purpose. The history stores it as an acknowledgement of one of these kinds.
+inline constexpr std::int64_t kPlainNote = -1, kMaintenance = -2;
+inline constexpr const char *kNoteKind = "note", *kMaintenanceKind = "maintenance";
+inline constexpr const char* kNoteCommand = "NOTE";  ///< CommandPacket::channel of such a request
+
 /// Makes a request to acknowledge the event with this id (kAllEvents: every raised event), with a
 /// random request number and the time of the host's clock.
 acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,

@@ -194,9 +194,11 @@ int show_years(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery&
   if (!weather) return fail(problems);
   const estimator::LifeBudget budget =
       r.config && r.config->watch ? r.config->watch->life : estimator::LifeBudget{};
-  const HistoryLosses losses = find_losses(Quantity::stiffness, elements, *weather, budget);
-  const HistoryLosses damping =
-      find_losses(Quantity::damping, read_days(r, Quantity::damping, summaries), *weather, budget);
+  const std::vector<std::int64_t> maintained = summaries.maintenance_days();
+  const HistoryLosses losses =
+      find_losses(Quantity::stiffness, elements, *weather, budget, maintained);
+  const HistoryLosses damping = find_losses(
+      Quantity::damping, read_days(r, Quantity::damping, summaries), *weather, budget, maintained);
   std::string page;
   if (!a.report.empty() && !elements.empty())
     page = history_page(summaries.structure(), elements, losses, damping, *weather,

@@ -34,7 +34,8 @@ std::string element_name(const HistoryLosses& l, int element) {
 }  // namespace
 
 HistoryLosses find_losses(Quantity quantity, const std::vector<ElementDays>& elements,
-                          const WeatherTable& weather, const estimator::LifeBudget& budget) {
+                          const WeatherTable& weather, const estimator::LifeBudget& budget,
+                          const std::vector<std::int64_t>& maintenance_days) {
   HistoryLosses out;
   out.quantity = quantity;
   out.budget = budget;
@@ -47,10 +48,13 @@ HistoryLosses find_losses(Quantity quantity, const std::vector<ElementDays>& ele
     out.from_day = std::min(out.from_day, e.days.begin()->first);
     out.to_day = std::max(out.to_day, e.days.rbegin()->first);
   }
+  for (const std::int64_t day : maintenance_days)
+    if (day >= out.from_day && day <= out.to_day) out.maintenance_days.push_back(day);
   estimator::YearsWatch watch(elements.size(), weather.covariates, budget);
   for (std::int64_t day = out.from_day; day <= out.to_day; ++day) {
     std::vector<estimator::DayValue> values;
     for (const ElementDays& e : elements) values.push_back(watched(quantity, e.value(day)));
+    if (begins_anew(maintenance_days, day)) watch.begin_anew();
     if (const auto loss = watch.push(static_cast<double>(day), values, weather.of(day)))
       out.found.push_back(in_quantity(quantity, *loss));
   }
@@ -62,6 +66,20 @@ HistoryLosses find_losses(Quantity quantity, const std::vector<ElementDays>& ele
   constexpr int kAllAlike = estimator::YearsWatch::kAllAlike;
   out.state.push_back({estimator::kNaN, watch.evidence(kAllAlike), watch.step(kAllAlike)});
   return out;
+}
+
+bool begins_anew(const std::vector<std::int64_t>& maintenance_days, std::int64_t day) {
+  return std::ranges::any_of(maintenance_days, [day](std::int64_t changed) {
+    return day == changed || day == changed + 1;
+  });
+}
+
+std::string maintenance_sentence(const std::vector<std::int64_t>& days) {
+  std::string out;
+  for (const std::int64_t day : days) out += (out.empty() ? "" : ", ") + day_text(day);
+  return out.empty()
+             ? ""
+             : "the building was changed on purpose on " + out + ": the search began anew there";
 }
 
 std::string probability_text(double probability) {
@@ -123,6 +141,7 @@ std::string losses_text(const HistoryLosses& l) {
                   day_text(l.from_day), day_text(l.to_day),
                   with.empty() ? "not known, the season stands for it" : with, losses_sentence(l));
   for (const auto& f : l.found) out += "  " + loss_sentence(l, f) + "\n";
+  if (!l.maintenance_days.empty()) out += maintenance_sentence(l.maintenance_days) + "\n";
   out += fmt::format("\n{:<12} {:>12} {:>9}  {}\n", "element", "median, N/m", "evidence",
                      "most likely");
   for (const auto& row : losses_rows(l))
@@ -171,6 +190,8 @@ std::string losses_json(const HistoryLosses& l, const HistoryLosses& damping) {
   ordered_json out{{"schema", "framewatch.losses/1"}, {"days", l.days},
                    {"weather", l.covariates},         {"losses", findings(l)},
                    {"damping", findings(damping)},    {"elements", ordered_json::array()}};
+  out["maintenance"] = ordered_json::array();
+  for (const std::int64_t day : l.maintenance_days) out["maintenance"].push_back(day_text(day));
   for (std::size_t p = 0; p < l.state.size(); ++p)
     out["elements"].push_back({{"parameter", p == l.elements.size() ? kAll : l.elements[p].c_str()},
                                {"evidence", l.state[p].evidence},

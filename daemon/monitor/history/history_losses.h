@@ -20,6 +20,7 @@ struct HistoryLosses {
   std::vector<std::string> covariates;
   std::int64_t from_day = 0, to_day = 0;              ///< since 1970, UTC
   int days = 0;                                       ///< with values
+  std::vector<std::int64_t> maintenance_days;         ///< within these
   std::vector<estimator::YearsWatch::Finding> found;  ///< in order of time
   struct State {
     double median, evidence;
@@ -29,9 +30,17 @@ struct HistoryLosses {
   estimator::LifeBudget budget;
 };
 
-/// Watches the elements by their daily means, from the first day on.
+/// Watches the elements by their daily means, from the first day on. maintenance_days:
+/// SummaryQuery::maintenance_days().
 HistoryLosses find_losses(Quantity quantity, const std::vector<ElementDays>& elements,
-                          const WeatherTable& weather, const estimator::LifeBudget& budget);
+                          const WeatherTable& weather, const estimator::LifeBudget& budget,
+                          const std::vector<std::int64_t>& maintenance_days);
+
+/// Returns true if the levels of `day` are not those of the day before: the building was changed on
+/// purpose on that day or on the one before it, which has values of both.
+bool begins_anew(const std::vector<std::int64_t>& maintenance_days, std::int64_t day);
+/// Returns what these days mean for the search; "" without any.
+std::string maintenance_sentence(const std::vector<std::int64_t>& days);
 
 /// Returns how many losses there are, and what that means.
 std::string losses_sentence(const HistoryLosses& losses);

@@ -104,6 +104,9 @@ std::string event_line(const event_t& e) {
 }
 
 std::string acknowledgement_line(const StoredAcknowledgement& a) {
+  if (is_note(a))
+    return fmt::format("{}  {:<8} {:<17} {:<10} by {}: {}", utc_text(a.time_us), "note",
+                       a.kind == kNoteKind ? "" : a.kind, "", a.who, a.comment);
   return fmt::format("{}  {:<8} {:<17} {:<10} event {}, by {}{}", utc_text(a.time_us), "known",
                      a.kind, a.place, a.id, a.who, a.comment.empty() ? "" : ": " + a.comment);
 }

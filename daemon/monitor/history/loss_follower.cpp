@@ -7,6 +7,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/change_words.h"
 #include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/history_losses.h"
 #include "estimator/years/damping_days.h"
 
 namespace framewatch::daemon {
@@ -83,8 +84,13 @@ bool LossFollower::begin(SummaryQuery& summaries, std::int64_t to_day) {
   });
   std::vector<std::string> covariates =
       names_of(lasting_covariates(summaries.weather_spans(), first_day, to_day));
+  std::vector<std::int64_t> maintenance_days = summaries.maintenance_days();
+  const auto taken = [this](std::vector<std::int64_t> days) {
+    std::erase_if(days, [this](std::int64_t day) { return day >= next_day_; });
+    return days;
+  };
   const bool same =
-      watch_ && covariates == covariates_ &&
+      watch_ && covariates == covariates_ && taken(maintenance_days) == taken(maintenance_days_) &&
       std::ranges::equal(elements, elements_, {}, &SummaryParameter::id, &SummaryParameter::id);
   // A clock that was ahead may have led beyond the present day.
   if (!same || to_day + 1 < next_day_) {
@@ -94,6 +100,7 @@ bool LossFollower::begin(SummaryQuery& summaries, std::int64_t to_day) {
     covariates_ = std::move(covariates);
     next_day_ = first_day;
   }
+  maintenance_days_ = std::move(maintenance_days);
   if (elements_.empty()) return false;
   if (!watch_) watch_.emplace(elements_.size(), covariates_of(covariates_), budget_);
   return true;
@@ -113,6 +120,7 @@ void LossFollower::take(SummaryQuery& summaries, std::int64_t from_day, std::int
     if (stop()) return;
     std::vector<estimator::DayValue> values;
     for (const ElementDays& e : elements) values.push_back(watched(quantity_, e.value(day)));
+    if (begins_anew(maintenance_days_, day)) watch_->begin_anew();
     const auto loss = watch_->push(static_cast<double>(day), values, weather.of(day));
     if (keeps_weather_)
       if (Eigen::VectorXd regressors = watch_->regressors(); regressors.size() > 0)

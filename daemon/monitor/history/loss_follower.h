@@ -36,7 +36,8 @@ WeatherTable kept_weather(const HistoryRequest& request, SummaryQuery& summaries
 std::optional<std::int64_t> first_summary(SummaryQuery& summaries, std::int64_t period_s);
 
 /// Finds losses in the daily means of a history as it grows, with the result of find_losses() over
-/// all days so far. Begins again from the first day when an element or a covariate joins or leaves.
+/// all days so far. Begins again from the first day when an element or a covariate joins or leaves,
+/// and when maintenance becomes known later.
 class LossFollower {
  public:
   /// window_s: length of the windows. period_s: of the summaries that are read.
@@ -72,6 +73,7 @@ class LossFollower {
   std::int64_t period_s_;
   std::vector<SummaryParameter> elements_;
   std::vector<std::string> covariates_;
+  std::vector<std::int64_t> maintenance_days_;  ///< since 1970, UTC
   std::optional<estimator::YearsWatch> watch_;
   std::int64_t next_day_ = 0;
   bool keeps_weather_ = false;

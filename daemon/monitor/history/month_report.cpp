@@ -141,12 +141,14 @@ std::string event_sentence(const MonthData& data) {
     warnings += e.severity == severity::warning;
     ++kinds[e.kind];
   }
+  const auto known = std::ranges::count_if(
+      data.acknowledgements, [](const StoredAcknowledgement& a) { return !is_note(a); });
   if (kinds.empty()) return "Events: none";
   std::string list;
   for (const auto& [kind, count] : kinds)
     list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, kind);
   return fmt::format("Events: {} alarms and {} warnings ({}); {} acknowledgements", alarms,
-                     warnings, list, data.acknowledgements.size());
+                     warnings, list, known);
 }
 
 /// Returns the sentences, and sets `changed`.
@@ -180,6 +182,10 @@ std::vector<std::string> sentences_of(const MonthData& data,
     out.push_back(fmt::format("Healthy: {} of {} frames have no loss of 1 % or more", healthy,
                               data.elements.size()));
   }
+  for (const StoredAcknowledgement& a : data.acknowledgements)
+    if (a.kind == kMaintenanceKind)
+      out.push_back(fmt::format("Changed on purpose on {}: {}", day_text(floor_day(a.time_us)),
+                                printable(a.comment)));
   out.push_back(coverage_sentence(elements, month));
   out.push_back(sample_sentence(data.channels));
   out.push_back(event_sentence(data));
@@ -335,7 +341,8 @@ std::optional<MonthReport> month_report(const Config& config,
   data.elements = read_days(request, Quantity::stiffness, summaries);
   data.losses = find_losses(Quantity::stiffness, data.elements,
                             weather ? *weather : kept_weather(request, summaries, data.elements),
-                            config.watch ? config.watch->life : estimator::LifeBudget{});
+                            config.watch ? config.watch->life : estimator::LifeBudget{},
+                            summaries.maintenance_days());
   data.labels = frame_labels(config.pipeline.structure);
   data.events = summaries.events(month.start_us(), month.end_us(), kMostMonthEvents);
   data.acknowledgements = summaries.acknowledgements(month.start_us(), month.end_us());

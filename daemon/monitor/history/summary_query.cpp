@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 
 #include "daemon/config/keys/weather_options.h"
+#include "daemon/monitor/events/event_messages.h"
+#include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_schema.h"
 #include "drivers/files/input_file.h"
@@ -249,6 +251,21 @@ std::vector<event_t> SummaryQuery::events_of(const std::string& kind, std::int64
       fmt::format("{} WHERE kind = ? AND state = 1 ORDER BY time_us DESC LIMIT ?", kEvent));
   s.bind(1, kind).bind(2, most);
   return events_in_order(s);
+}
+
+bool is_note(const StoredAcknowledgement& a) {
+  return a.kind == kNoteKind || a.kind == kMaintenanceKind;
+}
+
+std::vector<std::int64_t> SummaryQuery::maintenance_days() {
+  SqliteStatement s =
+      file_.prepare("SELECT time_us FROM acknowledgement WHERE kind = ? ORDER BY time_us");
+  s.bind(1, std::string(kMaintenanceKind));
+  std::vector<std::int64_t> out;
+  while (s.row())
+    if (const std::int64_t day = floor_day(s.integer(0)); out.empty() || out.back() != day)
+      out.push_back(day);
+  return out;
 }
 
 std::vector<StoredAcknowledgement> SummaryQuery::acknowledgements(std::int64_t from_us,

@@ -26,11 +26,14 @@ struct SummaryRow {
          whisker_high = 0, max = 0;
 };
 
-/// A stored acknowledgement; `place` and `kind` are those of the event.
+/// A stored acknowledgement; `place` and `kind` are those of the event. Or a note: is_note().
 struct StoredAcknowledgement {
   std::int64_t id = 0, time_us = 0;
   std::string kind, place, who, comment;
 };
+
+/// Returns true if this is a note (`framewatch note`), not an acknowledgement of an event.
+bool is_note(const StoredAcknowledgement& acknowledgement);
 
 struct SummaryPeriods {
   std::int64_t period_s = 0, count = 0, first_us = 0, last_us = 0;  ///< times are starts of periods
@@ -100,6 +103,9 @@ class SummaryQuery {
   std::int64_t count_raised(std::int64_t from_us, std::int64_t to_us);
   /// Returns the newest `most` raised events of a kind, in order of time.
   std::vector<event_t> events_of(const std::string& kind, std::int64_t most);
+  /// Returns the days since 1970 (UTC) on which the building was changed on purpose, as notes of
+  /// kind kMaintenanceKind tell, in order.
+  std::vector<std::int64_t> maintenance_days();
   /// Returns the newest `most` acknowledgements of [from_us, to_us), in order of time.
   std::vector<StoredAcknowledgement> acknowledgements(std::int64_t from_us, std::int64_t to_us,
                                                       std::int64_t most = INT64_MAX);

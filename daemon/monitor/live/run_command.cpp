@@ -23,6 +23,7 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/actions/acknowledge.h"
 #include "daemon/monitor/actions/action_report.h"
+#include "daemon/monitor/actions/note.h"
 #include "daemon/monitor/estimation/state_file.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history.h"
@@ -34,6 +35,7 @@
 #include "drivers/files/encoded.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/partial_file.h"
+#include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -82,16 +84,36 @@ class LiveEvents {
  private:
   void acknowledged(const event_t& event, const Acknowledgement& by) {
     actions_.acknowledged(event);
-    if (history_.history() == nullptr) return;
+    if (history_.history() != nullptr) (void)store(event, by);
+  }
+
+  /// Stores an acknowledgement in the history. Returns it as a message.
+  std::vector<std::uint8_t> store(const event_t& event, const Acknowledgement& by) {
     acknowledged_t message{};
     message.time_us = by.time_us;
     add_acknowledged(message, event, by);
-    history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED", drivers::encoded(message));
+    std::vector<std::uint8_t> bytes = drivers::encoded(message);
+    history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED", bytes);
+    return bytes;
+  }
+
+  CommandPacket keep_note(const CommandPacket& command, const std::string& user) {
+    if (history_.history() == nullptr)
+      return refused("there is no [history] that could keep a note");
+    const auto request = drivers::decoded<acknowledge_t>(command.bytes);
+    if (!request) return refused("cannot read the note: is it from another version?");
+    std::string why;
+    const std::optional<Note> note = note_of(*request, user, host_clock_us(), why);
+    if (!note) return refused(why);
+    log(LogLevel::notice, fmt::format("{} of {} by {}: {}", note->event.kind,
+                                      utc_text(note->by.time_us), note->by.who, note->by.comment));
+    return {"ACKNOWLEDGED", store(note->event, note->by)};
   }
 
   CommandPacket obey(const CommandPacket& command, const std::string& user) {
+    if (command.channel == kNoteCommand) return keep_note(command, user);
     if (command.channel != "ACKNOWLEDGE")
-      return refused("framewatch run takes no other command than acknowledge");
+      return refused("framewatch run takes no other commands than acknowledge and note");
     const auto answer = desk_.obey(command.bytes, user, raised(), host_clock_us());
     if (!answer) return refused("cannot read the request: is it from another version?");
     return {"ACKNOWLEDGED", drivers::encoded(*answer)};

@@ -11,6 +11,7 @@ const middle = list => { const v = list.filter(x => x !== null).sort((a, b) => a
 const least = list => list.reduce((a, b) => b !== null && (a === null || b < a) ? b : a, null);
 const most = list => list.reduce((a, b) => b !== null && (a === null || b > a) ? b : a, null);
 const inWords = names => names.length < 2 ? names.join() : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
+const noteWords = n => `${n.who || 'somebody'}${n.kind === 'note' ? '' : n.kind === 'maintenance' ? ' changed the building' : ` acknowledged ${n.kind}`}` + (n.comment ? `: “${n.comment}”` : '');
 const axisOf = style => ({stroke: style.soft, grid: {stroke: style.rule, width: 1}, ticks: {stroke: style.rule}, font: '11px system-ui', labelFont: '12px system-ui', labelSize: 16, labelGap: 0});
 let years = null;
 class Years {
@@ -115,7 +116,7 @@ class Years {
     this.unit = engineering(usual || reference(chosen) || 1, q.unit);
     say2($('y-words'), this.words(d, e, q, usual));
     this.marks = [...d.events.map(x => ({us: x.since_us >= d.from_us && x.since_us < x.time_us ? x.since_us : x.time_us, grave: x.severity, what: x.message, place: x.place, told_us: x.time_us, kind: x.kind})),
-      ...d.notes.map(n => ({us: n.time_us, grave: -1, what: `${n.who || 'somebody'} acknowledged ${n.kind}` + (n.comment ? `: “${n.comment}”` : ''), place: n.place, told_us: n.time_us, kind: 'note'}))].sort((a, b) => a.us - b.us);
+      ...d.notes.map(n => ({us: n.time_us, grave: -1, what: noteWords(n), place: n.place, told_us: n.time_us, kind: 'note'}))].sort((a, b) => a.us - b.us);
     this.marks.forEach((m, i) => { m.number = i + 1; });
     this.make(); this.drawMap(); this.list(d); this.table();
     window.framewatch.years = d;

@@ -89,7 +89,7 @@ std::vector<NoiseBeyond> noise_beyond_configured(
 /// left to explain.
 std::string noise_sentence(const DiagnoseOutput& output);
 
-/// Returns what the search did not do within its limit of time; "" if it did all.
+/// Returns a sentence on Diagnosis::not_done; "" if the diagnosis is whole.
 std::string limit_sentence(const DiagnoseOutput& output);
 
 /// Returns the text that the command prints: all of these.

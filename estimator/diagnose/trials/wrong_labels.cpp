@@ -78,7 +78,7 @@ void estimate_costs(const std::vector<Whitened>& systems, std::vector<Trial>& la
       const Eigen::MatrixXcd operation = s.operation[static_cast<std::size_t>(b)];
       const Eigen::MatrixXcd metric = operation.adjoint() * (s.weights->metric(b) * operation);
       for (Trial& t : labels) {
-        // Of one or two readings the spectrum changes.
+        // The spectrum of one or two readings changes.
         const Eigen::Index i = t.place.channel, j = t.place.with_channel;
         const bool two = t.kind == EffectKind::swapped;
         const Complex y = s.calibrated(i, b), change = two ? s.calibrated(j, b) - y : -2.0 * y;

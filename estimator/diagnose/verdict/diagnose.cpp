@@ -92,7 +92,7 @@ class Diagnoser {
     }
     search_.complete(now);
     search_.set_linear(now);
-    search_.settle(now);
+    search_.keep(now);
     if (!in_time(kSearchShare, [&] { search(now); })) search_.end_early(now);
     name_by_shape(search_.context_of(now), out_.effects);
     out_.ratio_after = search_.ratio(now);
@@ -161,11 +161,11 @@ class Diagnoser {
     search_.begin_part(SearchPart::several);
     progress_.begin("checks", 0.75, 0.8);
     withdraw_other_kind(now);
-    search_.settle(now);
+    search_.keep(now);
     const bool several = find_several(now) && !find_further(now);
     name_nearest(now);
     search_.begin_part(SearchPart::redundant);
-    search_.settle(now);
+    search_.keep(now);
     find_combined_laws(now);
     if (!out_.effects.empty() && !several) {
       drop_redundant(now);

@@ -51,8 +51,8 @@ struct Diagnosis {
       after;  ///< of each segment, for models fitted to the training segments alone
   /// The training segments alone do not determine the effects, so `after` is that of `model`.
   bool after_of_all = false;
-  /// What was not done, or only in part, because the time was over (DiagnosisOptions::is_over), in
-  /// its order. If the search is among it, no name is more likely right than wrong.
+  /// The parts that were not done, or only in part, because the time was over (is_over). If parts
+  /// of the search are among them, no name is more likely right than wrong.
   std::vector<std::string> not_done;
   std::vector<FoundEffect> known;            ///< effects of the configuration, fitted again
   std::vector<FoundEffect> effects;          ///< found, in their order

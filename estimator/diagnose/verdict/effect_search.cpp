@@ -150,21 +150,21 @@ void EffectSearch::rounds(FitResult& now, std::size_t first) {
   for (std::size_t round = first; round < static_cast<std::size_t>(options_.rounds); ++round) {
     const bool found = one_round(now, round);
     if (found) complete(now);
-    if (!provisional_) settle(now);
+    if (!provisional_) keep(now);
     if (!found) return;
   }
 }
 
-void EffectSearch::settle(const FitResult& now) {
-  settled_ = {out_, now, segments_.front().corner_hz};
+void EffectSearch::keep(const FitResult& now) {
+  kept_ = {out_, now, segments_.front().corner_hz};
 }
 
 void EffectSearch::end_early(FitResult& now) {
   // The places of the present round are known before its trials are compared.
   std::vector<WhereEntry> where = std::move(out_.where), map = std::move(out_.map);
-  out_ = settled_->out;
-  now = settled_->now;
-  set_corner(settled_->corner_hz, segments_);
+  out_ = kept_->out;
+  now = kept_->now;
+  set_corner(kept_->corner_hz, segments_);
   if (out_.where.empty()) {
     out_.where = std::move(where);
     out_.map = std::move(map);

@@ -101,10 +101,10 @@ class EffectSearch {
   /// Begins a part of the search.
   void begin_part(SearchPart part) { part_ = part; }
   /// Keeps the present state: end_early() returns to it.
-  void settle(const FitResult& now);
-  /// Returns to the last settled state because the search is over. Says in the diagnosis what was
-  /// not done, doubts every name, and keeps the trials of the present round as rejected if nothing
-  /// is named.
+  void keep(const FitResult& now);
+  /// Returns to the state that was kept last because the search is over. Says in the diagnosis what
+  /// was not done, doubts every name, and keeps the trials of the present round as rejected if
+  /// nothing is named.
   void end_early(FitResult& now);
 
  private:
@@ -136,12 +136,12 @@ class EffectSearch {
   double before_lead_ = 0;  ///< cost before a law that is assumed provisionally; 0: no such law
 
   /// A state to which the search can return.
-  struct Settled {
+  struct Kept {
     Diagnosis out;
     FitResult now;
     double corner_hz;
   };
-  std::optional<Settled> settled_;
+  std::optional<Kept> kept_;
   bool provisional_ = false;   ///< the present state may be given up again
   std::vector<Trial> fitted_;  ///< of the present round
   SearchPart part_ = SearchPart::labels;

@@ -97,10 +97,12 @@ struct Seen {
 };
 
 /// Runs a world for so many days. event: changes it before a day. sight: changes what is seen.
+/// anew_day: the watch is told before that day that the building was changed on purpose.
 std::vector<YearsWatch::Finding> run(unsigned seed, int days,
                                      const std::function<void(World&)>& event = {},
                                      const std::function<void(int, Seen&)>& sight = {},
-                                     const std::vector<Covariate>& covariates = kWeather) {
+                                     const std::vector<Covariate>& covariates = kWeather,
+                                     int anew_day = 0) {
   World world(seed);
   YearsWatch watch(kStories, covariates, LifeBudget{});
   std::vector<YearsWatch::Finding> out;
@@ -111,6 +113,7 @@ std::vector<YearsWatch::Finding> run(unsigned seed, int days,
     for (const World::Story& s : world.stories) seen.values.push_back({s.value, kNoise * s.value});
     if (!covariates.empty()) seen.weather = {world.degc, world.percent};
     if (sight) sight(day, seen);
+    if (day == anew_day) watch.begin_anew();
     const auto finding = watch.push(day, seen.values, seen.weather);
     if (finding) out.push_back(*finding);
   }
@@ -241,6 +244,23 @@ TEST(Years, AKnownLossIsNotFoundAgainAndTheNextOneIs) {
     ASSERT_EQ(findings.size(), 2) << seed;
     EXPECT_EQ(findings[0].element, 2);
     EXPECT_EQ(findings[1].element, 5);
+  }
+}
+
+TEST(Years, AChangeOnPurposeIsNotFoundAndALossAfterItIs) {
+  const auto change = [](World& w) {
+    if (w.day + 1 == kLossDay)  // a new wall in one story, and books in all of them
+      for (std::size_t s = 0; s < w.stories.size(); ++s) w.stories[s].left = s == 1 ? 1.6 : 0.9;
+    if (w.day + 1 == kLossDay + 200) w.stories[5].left *= 0.93;
+  };
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    EXPECT_GT(run(seed, kLossDay + 100, change).size(), 0) << seed;
+    const auto findings = run(seed, kLossDay + 400, change, {}, kWeather, kLossDay);
+    ASSERT_EQ(findings.size(), 1) << seed;
+    EXPECT_EQ(findings[0].element, 5);
+    EXPECT_GE(findings[0].found_day, kLossDay + 200);
+    EXPECT_LT(findings[0].found_day, kLossDay + 260);
+    EXPECT_LT(std::abs(findings[0].ratio + 0.07), kMostErrors * findings[0].std_error);
   }
 }
 

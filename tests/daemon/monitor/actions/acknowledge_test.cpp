@@ -20,6 +20,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/process.h"
 #include "daemon/monitor/actions/acknowledge.h"
+#include "daemon/monitor/actions/note.h"
 #include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/history/summary_query.h"
@@ -316,6 +317,75 @@ TEST_F(Tower, AnAcknowledgementSurvivesARestartAndIsInTheHistory) {
   EXPECT_EQ(stored[0].who, user_name(::geteuid()) + " (says: me)");
   EXPECT_EQ(acknowledge(id), 2);  // no daemon runs
   EXPECT_EQ(acknowledge_command({"3x", config(), "", ""}), 2);
+}
+
+TEST_F(Tower, ANoteIsInTheHistory) {
+  NoteArguments note;
+  note.text = "bookshelves";
+  note.config = config();
+  note.at = "2026-01-02";
+  note.who = "Jo";
+  EXPECT_EQ(note_command(note), 2);  // no daemon runs
+  {
+    test::Child daemon = run();
+    ASSERT_NE(raised(), 0);
+    EXPECT_EQ(note_command(note), 0);
+    note.maintenance = true;
+    EXPECT_EQ(note_command(note), 0);
+    note.at = "yesterday";
+    EXPECT_EQ(note_command(note), 2);
+    note.at = "2199-01-01";
+    EXPECT_EQ(note_command(note), 1);
+    note.at = "";
+    note.text = " ";
+    EXPECT_EQ(note_command(note), 1);
+    EXPECT_EQ(daemon.stop(SIGTERM), 0);
+  }
+  SummaryQuery history;
+  ASSERT_EQ(history.open(directory_.path("can/h")), "");
+  const auto stored = history.acknowledgements(0, INT64_MAX);
+  ASSERT_EQ(stored.size(), 2u);
+  for (const StoredAcknowledgement& s : stored) {
+    EXPECT_TRUE(is_note(s));
+    EXPECT_EQ(s.time_us, 20'455 * kDay_us);
+    EXPECT_EQ(s.who, user_name(::geteuid()) + " (says: Jo)");
+    EXPECT_EQ(s.comment, "bookshelves");
+  }
+  EXPECT_EQ(history.maintenance_days(), std::vector<std::int64_t>{20'455});
+}
+
+TEST(Note, NeedsATextAndATimeThatHasPassed) {
+  constexpr std::int64_t kNow_us = 20'000 * kDay_us;
+  const auto why = [&](std::int64_t sort, const std::string& text, std::int64_t time_us) {
+    acknowledge_t request = acknowledge_request(sort, "", text);
+    request.time_us = time_us;
+    std::string out;
+    const bool kept = note_of(request, "alice", kNow_us, out).has_value();
+    EXPECT_EQ(kept, out.empty());
+    return out;
+  };
+  EXPECT_EQ(why(kPlainNote, "x", kNow_us), "");
+  EXPECT_EQ(why(kMaintenance, std::string(500, 'x'), 0), "");
+  EXPECT_EQ(why(kPlainNote, " \n", kNow_us), "a note needs a text");
+  EXPECT_EQ(why(kPlainNote, std::string(501, 'x'), kNow_us),
+            "a note has at most 500 bytes, not 501");
+  EXPECT_EQ(why(7, "x", kNow_us), "7 is an unknown sort of note: is the program from another version?");
+  EXPECT_NE(why(kPlainNote, "x", -1).find("about the past"), std::string::npos);
+  EXPECT_NE(why(kPlainNote, "x", kNow_us + 2 * kDay_us).find("about the past"), std::string::npos);
+  EXPECT_NE(why(kPlainNote, "x", INT64_MAX).find("about the past"), std::string::npos);
+}
+
+TEST(Note, IsOneLineAndNamesItsAuthor) {
+  acknowledge_t request = acknowledge_request(kMaintenance, "Bob", "a\nwall\x1b[2J");
+  request.time_us = 5;
+  std::string why;
+  const auto note = note_of(request, "alice", 10, why);
+  ASSERT_TRUE(note) << why;
+  EXPECT_EQ(note->event.kind, kMaintenanceKind);
+  EXPECT_EQ(note->event.id, request.request);
+  EXPECT_EQ(note->by.time_us, 5);
+  EXPECT_EQ(note->by.who, "alice (says: Bob)");
+  EXPECT_EQ(note->by.comment, "a\\nwall\\x1b[2J");
 }
 
 TEST_F(Tower, ADatagramAcknowledgesNothing) {

@@ -111,7 +111,19 @@ class WeatherHistory : public testing::Test {
     const std::vector<ElementDays> days = read_days(request, Quantity::stiffness, summaries);
     return find_losses(Quantity::stiffness, days,
                        weather_of(summaries.weather(-kEver_us, kEver_us), {"outside_degc"}),
-                       config_.watch->life);
+                       config_.watch->life, summaries.maintenance_days());
+  }
+  /// Tells that the building was changed on purpose at noon of a day, or only notes something.
+  void note(int day, const char* kind) {
+    SummaryStore store(*config_.history);
+    ASSERT_EQ(store.open(), "");
+    event_t event{};
+    event.id = day;
+    event.kind = kind;
+    SummaryBatch batch;
+    add_acknowledged(batch.acknowledged.emplace_back(), event,
+                     {(kFirstDay + day) * kDay_us + kDay_us / 2, "alice", "a wall"});
+    ASSERT_EQ(store.add(batch), "");
   }
 
   const test::TemporaryDirectory directory_;
@@ -254,6 +266,25 @@ TEST_F(WeatherHistory, AHealthyBuildingHasNoLoss) {
   write(0, kDays, false);
   LossFollower f = follower();
   EXPECT_TRUE(advance(f, kDays).empty());
+}
+
+TEST_F(WeatherHistory, MaintenanceIsNoLossWheneverItIsTold) {
+  write(0, kDays);
+  note(kLossDay, kNoteKind);
+  EXPECT_EQ(all_losses().found.size(), 1u);  // a remark changes nothing
+  LossFollower late = follower();
+  EXPECT_EQ(advance(late, kDays).size(), 1u);
+  note(kLossDay, kMaintenanceKind);
+  const HistoryLosses all = all_losses();
+  EXPECT_TRUE(all.found.empty());
+  EXPECT_EQ(all.maintenance_days, std::vector<std::int64_t>{kFirstDay + kLossDay});
+  EXPECT_NE(losses_text(all).find("changed on purpose on 2025-07-20"), std::string::npos)
+      << losses_text(all);
+  EXPECT_NE(losses_json(all, {}).find("2025-07-20"), std::string::npos);
+  LossFollower early = follower();
+  EXPECT_TRUE(advance(early, kDays).empty());
+  EXPECT_TRUE(advance(late, kDays).empty());
+  EXPECT_EQ(late.days(), early.days());
 }
 
 TEST_F(WeatherHistory, FollowsBackAfterAClockThatWasAhead) {
