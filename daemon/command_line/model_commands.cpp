@@ -231,7 +231,8 @@ void add_diagnose(CommandList& commands) {
                    "longest time, s: the search ends with what it has found, and says what it did "
                    "not do (default 300; 0: no limit)")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(CLI::Range(0.0, 1e6))
+      ->envname("FRAMEWATCH_DIAGNOSE_LIMIT");
   command->add_flag("--quiet", arguments.quiet, "print no progress and no summary");
   add_max_size(command);
   commands.set_action(command, [&arguments] { return diagnose_command(arguments); });

@@ -180,7 +180,7 @@ void diagnose_case(const std::string& program, const std::string& directory,
   if (std::filesystem::exists(directory + "/" + folder + "/diagnosis.json")) return;
   const std::string log = log_of(directory, folder), running = log + ".running";
   const std::string command = fmt::format(
-      "'{0}' diagnose '{1}/config.toml' --train '{1}/train.csv.gz' --holdout "
+      "'{0}' diagnose '{1}/config.toml' --limit 0 --train '{1}/train.csv.gz' --holdout "
       "'{1}/holdout.csv.gz' --out '{1}/{2}' --quiet {3} >'{4}' 2>&1",
       program, directory, folder, more, running);
   const int status = std::system(command.c_str());

@@ -36,8 +36,8 @@ std::optional<Note> note_of(const acknowledge_t& request, const std::string& use
                             std::int64_t now_us, std::string& refused) {
   refused.clear();
   if (request.id != kPlainNote && request.id != kMaintenance)
-    refused =
-        fmt::format("{} is an unknown sort of note: is the program from another version?", request.id);
+    refused = fmt::format("{} is an unknown sort of note: is the program from another version?",
+                          request.id);
   else if (is_blank(request.comment))
     refused = "a note needs a text";
   else if (request.comment.size() > kMaxNote)

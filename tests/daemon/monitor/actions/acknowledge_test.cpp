@@ -369,7 +369,8 @@ TEST(Note, NeedsATextAndATimeThatHasPassed) {
   EXPECT_EQ(why(kPlainNote, " \n", kNow_us), "a note needs a text");
   EXPECT_EQ(why(kPlainNote, std::string(501, 'x'), kNow_us),
             "a note has at most 500 bytes, not 501");
-  EXPECT_EQ(why(7, "x", kNow_us), "7 is an unknown sort of note: is the program from another version?");
+  EXPECT_EQ(why(7, "x", kNow_us),
+            "7 is an unknown sort of note: is the program from another version?");
   EXPECT_NE(why(kPlainNote, "x", -1).find("about the past"), std::string::npos);
   EXPECT_NE(why(kPlainNote, "x", kNow_us + 2 * kDay_us).find("about the past"), std::string::npos);
   EXPECT_NE(why(kPlainNote, "x", INT64_MAX).find("about the past"), std::string::npos);
