@@ -107,6 +107,27 @@ TEST_F(MonthReportTest, SaysWhatChangedAndWhatIsHealthy) {
     EXPECT_NE(november->page.find(part), std::string::npos) << part;
 }
 
+TEST_F(MonthReportTest, WorkOnTheBuildingIsToldAndIsNoLoss) {
+  event_t work{};
+  work.id = 8;
+  work.kind = kMaintenanceKind;
+  SummaryBatch batch;
+  add_acknowledged(batch.acknowledged.emplace_back(), work,
+                   {first_us_ + kLossDay * kDay_us, "alice", "removed <wall>"});
+  SummaryStore store(*config_.history);
+  ASSERT_EQ(store.open(), "");
+  ASSERT_EQ(store.add(batch), "");
+  const auto november = report(11);
+  ASSERT_TRUE(november) << problem_;
+  EXPECT_FALSE(november->changed);
+  const std::string text = all(*november);
+  for (const char* part : {"Nothing changed this month", "Healthy: 4 of 4",
+                           "Changed on purpose on 2026-11-10: removed <wall>",
+                           "(1 stiffness_change); 0 acknowledgements"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  EXPECT_NE(november->page.find("removed &lt;wall&gt;"), std::string::npos);
+}
+
 TEST_F(MonthReportTest, AQuietMonthIsHealthy) {
   const auto october = report(10);
   ASSERT_TRUE(october) << problem_;
