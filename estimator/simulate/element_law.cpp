@@ -88,6 +88,48 @@ class YieldingSprings : public ElementLaw {
   double kh_, dy_, spread_, loss_;
 };
 
+/// Round yielding that follows Masing's rule: parallel springs in series with sliders that yield
+/// one after the other (Iwan 1966). States: the deformation of each spring in units of dy.
+class RoundYielding : public ElementLaw {
+ public:
+  explicit RoundYielding(const Effect& e) : kh_(e.value("kh_npm")), dy_(e.value("dy_m")) {
+    const double sharpness = e.value("sharpness");
+    const double first = reached(kFirst, sharpness), last = reached(kLast, sharpness);
+    const double ratio = std::pow(last / first, 1.0 / (kSprings - 1));
+    double before = 1;
+    for (std::size_t i = 0; i < kSprings; ++i) {
+      limit_[i] = first * std::pow(ratio, static_cast<double>(i));
+      const double next = limit_[i] * std::sqrt(ratio);
+      const double after = std::exp(-(1 + 1 / sharpness) * std::log1p(std::pow(next, sharpness)));
+      share_[i] = before - after;
+      before = after;
+    }
+    elastic_ = before;
+  }
+  int states() const override { return kSprings; }
+  double force(double, double d, double, std::span<const double> z) const override {
+    double sum = elastic_ * d / dy_;
+    for (std::size_t i = 0; i < kSprings; ++i) sum += share_[i] * z[i];
+    return kh_ * dy_ * sum;
+  }
+  void rates(double, double v, std::span<const double> z, std::span<double> rate) const override {
+    for (std::size_t i = 0; i < kSprings; ++i)
+      rate[i] = std::abs(z[i]) >= limit_[i] && z[i] * v > 0 ? 0 : v / dy_;
+  }
+  double stiffness_bound() const override { return kh_; }
+
+ private:
+  static constexpr std::size_t kSprings = 100;
+  static constexpr double kFirst = 0.99, kLast = 5e-4;  // slopes between which springs yield
+  /// Returns d/dy where first loading has this slope, over kh.
+  static double reached(double slope, double sharpness) {
+    return std::pow(std::pow(slope, -sharpness / (1 + sharpness)) - 1, 1 / sharpness);
+  }
+
+  double kh_, dy_, elastic_ = 0;
+  std::array<double, kSprings> limit_, share_;
+};
+
 /// Bouc-Wen; with a slip zone, pinching. States: z, m, and the work over kh dy^2.
 class BoucWen : public ElementLaw {
  public:
@@ -148,37 +190,67 @@ class SlackBrace : public ElementLaw {
   double kh_, dy_, up_, down_;
 };
 
+/// Returns the share of its stiffness that a saturating spring has lost at u = d/d0.
+double lost_share(double u, double shape) {
+  return -std::expm1(-std::log1p(std::pow(std::abs(u), shape)) / shape);
+}
+
+/// The curve y(x) of amplitude_dependence, 1 at the reference deformation: a power, or one that
+/// saturates.
+class Softens {
+ public:
+  explicit Softens(const Effect& e)
+      : exponent_(e.value("exponent")), saturation_(e.value("saturation_m") / e.value("at_m")) {
+    if (saturation_ > 0) scale_ = 1 / lost_share(1 / saturation_, exponent_ - 1);
+  }
+  /// Returns y/x.
+  double share(double x) const {
+    if (saturation_ > 0) return scale_ * lost_share(x / saturation_, exponent_ - 1);
+    return std::pow(std::abs(x), exponent_ - 1);
+  }
+  /// x: > 0.
+  double slope(double x) const {
+    if (!(saturation_ > 0)) return exponent_ * std::pow(x, exponent_ - 1);
+    const double shape = exponent_ - 1, level = std::log1p(std::pow(x / saturation_, shape));
+    return -scale_ * std::expm1(-(1 / shape + 1) * level);
+  }
+
+ private:
+  double exponent_, saturation_, scale_ = 1;
+};
+
 /// One story of an elastic amplitude_dependence.
 class AmplitudeDependence : public ElementLaw {
  public:
   AmplitudeDependence(const Effect& e, double stiffness)
       : softening_(stiffness * e.value("softening")),
         at_m_(e.value("at_m")),
-        exponent_(e.value("exponent")),
-        damping_(stiffness * e.value("damping_s2pm")) {}
+        damping_(stiffness * e.value("damping_s2pm")),
+        curve_(e) {}
   double force(double, double d, double v, std::span<const double>) const override {
-    return damping_ * v * std::abs(v) -
-           softening_ * d * std::pow(std::abs(d) / at_m_, exponent_ - 1);
+    return damping_ * v * std::abs(v) - softening_ * d * curve_.share(d / at_m_);
   }
 
  private:
-  double softening_, at_m_, exponent_, damping_;
+  double softening_, at_m_, damping_;
+  Softens curve_;
 };
 
 /// One story of amplitude_dependence with slipping joints: springs in series with sliders that
 /// yield one after the other (Iwan 1966). There are enough of them that the force at first loading
-/// is the power law. States: the deformation of each spring, m.
+/// is the law's curve. States: the deformation of each spring, m.
 class SlippingJoints : public ElementLaw {
  public:
   SlippingJoints(const Effect& e, double stiffness)
       : elastic_(e, stiffness), slip_(e.value("slip")) {
-    const double at_m = e.value("at_m"), exponent = e.value("exponent");
+    const double at_m = e.value("at_m");
+    const Softens curve(e);
     const double ratio = std::pow(kLargest / kSmallest, 1.0 / (kSprings - 1));
     double below = 0;
     for (std::size_t i = 0; i < kSprings; ++i) {
       const double limit = kSmallest * std::pow(ratio, static_cast<double>(i));
-      const double slipping = stiffness * e.value("softening") * exponent *
-                              std::pow(limit * std::sqrt(ratio), exponent - 1);
+      const double slipping =
+          stiffness * e.value("softening") * curve.slope(limit * std::sqrt(ratio));
       springs_[i] = {slipping - below, limit * at_m};
       below = slipping;
     }
@@ -279,6 +351,7 @@ std::unique_ptr<ElementLaw> make_hysteretic_law(const Effect& e) {
   if (e.kind == EffectKind::pinching && e.value("slack") > 0)
     return std::make_unique<SlackBrace>(e);
   if (e.kind != EffectKind::bilinear_hysteresis) return std::make_unique<BoucWen>(e);
+  if (e.value("sharpness") > 0) return std::make_unique<RoundYielding>(e);
   if (e.value("spread") > 0 || e.value("strength_loss") > 0)
     return std::make_unique<YieldingSprings>(e);
   return make_slider(e.value("kh_npm"), e.value("dy_m"));
@@ -287,6 +360,18 @@ std::unique_ptr<ElementLaw> make_hysteretic_law(const Effect& e) {
 std::unique_ptr<ElementLaw> without_memory(ForceLaw::Force force, double stiffness_bound = 0,
                                            double damping_bound = 0) {
   return std::make_unique<ForceLaw>(std::move(force), stiffness_bound, damping_bound);
+}
+
+/// Returns a spring that is the power `exponent` of the deformation, or that up to its saturation.
+std::unique_ptr<ElementLaw> make_spring(const Effect& e, double size, int exponent) {
+  const double d0 = e.value("saturation_m"), shape = e.value("shape");
+  if (!(d0 > 0))
+    return without_memory(
+        [=](double, double d, double) { return size * d * (exponent == 3 ? d * d : std::abs(d)); });
+  const double most = size * std::pow(d0, exponent - 1) * shape;
+  return without_memory(
+      [=](double, double d, double) { return most * d * lost_share(d / d0, shape); },
+      std::abs(most));
 }
 
 /// Returns a clearance that closes onto a spring and a dashpot that only push.
@@ -330,11 +415,9 @@ std::unique_ptr<ElementLaw> make_amplitude_law(const Effect& e, double stiffness
 std::unique_ptr<ElementLaw> make_law(const Effect& e, const Structure& s) {
   switch (e.kind) {
     case EffectKind::cubic_stiffness:
-      return without_memory(
-          [k3 = e.value("k3_npm3")](double, double d, double) { return k3 * d * (d * d); });
+      return make_spring(e, e.value("k3_npm3"), 3);
     case EffectKind::quadratic_stiffness:
-      return without_memory(
-          [k2 = e.value("k2_npm2")](double, double d, double) { return k2 * d * std::abs(d); });
+      return make_spring(e, e.value("k2_npm2"), 2);
     case EffectKind::one_sided_gap:
     case EffectKind::two_sided_gap:
       return make_contact(e);

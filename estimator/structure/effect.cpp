@@ -288,6 +288,14 @@ class Checker {
   void check_together() {
     if (effect_.kind == EffectKind::one_sided_gap && std::abs(effect_.value("side")) != 1)
       add("side", "must be 1 or -1");
+    constexpr double kRoundest = 0.2;
+    const bool round =
+        effect_.kind == EffectKind::bilinear_hysteresis && effect_.value("sharpness") > 0;
+    if (round && effect_.value("sharpness") < kRoundest)
+      add("sharpness", "must be 0 or at least 0.2");
+    if (round)
+      for (const std::string_view key : {"spread", "strength_loss"})
+        if (effect_.value(key) > 0) add(key, "must be 0 with sharpness");
     if (effect_.kind == EffectKind::unmeasured_force &&
         effect_.value("low_hz") >= effect_.value("high_hz"))
       add("low_hz", "must be below high_hz");

@@ -50,6 +50,10 @@ const EffectParameter kStiffnessLoss =
 const EffectParameter kContactDamping =
     within("cg_nspm", "N*s/m", 0.0, 0, kAny, "cg: contact damping");
 
+constexpr std::string_view kShapes = "m: 1 is hyperbolic, 2.5 nearly tanh, 20 has two slopes";
+const EffectParameter kSaturation = within("saturation_m", "m", 0.0, 0, kAny,
+                                           "d0: deformation where the change levels off; 0: none");
+
 constexpr std::initializer_list<PlaceKind> kElement = {PlaceKind::frame, PlaceKind::panel};
 constexpr std::initializer_list<PlaceKind> kFrame = {PlaceKind::frame};
 constexpr std::initializer_list<PlaceKind> kNode = {PlaceKind::node};
@@ -66,27 +70,35 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
       {cubic_stiffness,
        "cubic_stiffness",
        kElement,
-       {either_sign("k3_npm3", "N/m^3", "cubic stiffness")},
-       "f = k3 d^3",
+       {either_sign("k3_npm3", "N/m^3", "cubic stiffness"), kSaturation,
+        within("shape", "", 2.0, 0.1, 60, kShapes)},
+       "f = k3 d^3; with d0: f = k3 d0^2 m (d - d/(1 + abs(d/d0)^m)^(1/m))",
        "k3 > 0 hardens, k3 < 0 softens.",
-       "Duffing 1918; Wigren and Schoukens 2013 (Silverbox)"},
+       "Duffing 1918; Wigren and Schoukens 2013 (Silverbox); d0: Richard and Abbott, J. Eng. Mech. "
+       "Div. 101 (1975)"},
       {quadratic_stiffness,
        "quadratic_stiffness",
        kElement,
-       {either_sign("k2_npm2", "N/m^2", "quadratic stiffness")},
-       "f = k2 d abs(d)",
+       {either_sign("k2_npm2", "N/m^2", "quadratic stiffness"), kSaturation,
+        within("shape", "", 1.0, 0.1, 60, kShapes)},
+       "f = k2 d abs(d); with d0: f = k2 d0 m (d - d/(1 + abs(d/d0)^m)^(1/m))",
        "k2 > 0 hardens, k2 < 0 softens, in both directions.",
-       "Nayfeh and Mook, Nonlinear Oscillations, 1979"},
+       "Nayfeh and Mook, Nonlinear Oscillations, 1979; hyperbolic: Kondner, J. Soil Mech. Found. "
+       "Div. 89 (1963); d0: Richard and Abbott, J. Eng. Mech. Div. 101 (1975)"},
       {bilinear_hysteresis,
        "bilinear_hysteresis",
        kElement,
        {kHystereticStiffness, kYieldDeformation,
         within("spread", "", 0.0, 0, 1,
                "s: ten springs yield in turn between dy (1 - s) and dy (1 + s); 0: one corner"),
-        kStrengthLoss},
-       "f = kh z; z' = v while abs(z) < dy or z v < 0, else 0",
+        kStrengthLoss,
+        within("sharpness", "", 0.0, 0, 60,
+               "n: round yielding, 1 is hyperbolic, instead of s and a; 0: none")},
+       "f = kh z; z' = v while abs(z) < dy or z v < 0, else 0; with n: z = d/(1 + "
+       "abs(d/dy)^n)^(1/n) at first loading, after reversals doubled by Masing's rule",
        kHystereticSign,
-       "Caughey, J. Appl. Mech. 27 (1960)"},
+       "Caughey, J. Appl. Mech. 27 (1960); n: Masing 1926, Kondner, J. Soil Mech. Found. Div. 89 "
+       "(1963), Richard and Abbott, J. Eng. Mech. Div. 101 (1975)"},
       {bouc_wen,
        "bouc_wen",
        kElement,
@@ -158,12 +170,15 @@ std::vector<EffectDescription> friction_contact_and_weight() {
         positive("at_m", "m", "D: reference deformation"),
         within("exponent", "", 2.0, 1, 9, "p: exponent of the deformation"),
         within("damping_s2pm", "s^2/m", 0.0, -kAny, kAny, "g: coefficient of the squared rate"),
-        within("slip", "", 0.0, 0, 1, "s: share of softening from joint slip")},
-       "f = k (-r D ((1 - s) x abs(x)^(p - 1) + s z(x)) + g v abs(v)), x = d/D, in every story of "
-       "the frame or direction; z(x) = x abs(x)^(p - 1) at first loading, after reversals doubled "
-       "by Masing's rule",
-       "r > 0 softens, g > 0 resists the velocity. Joint slip dissipates.",
-       "Nayfeh and Mook, Nonlinear Oscillations, 1979; Iwan, J. Appl. Mech. 33 (1966)"},
+        within("slip", "", 0.0, 0, 1, "s: share of softening from joint slip"), kSaturation},
+       "f = k (-r D ((1 - s) y(x) + s z(x)) + g v abs(v)), x = d/D, in every story of the frame or "
+       "direction; y(x) = x abs(x)^(p - 1); with d0: y(x) = u(x)/u(1), u(x) = x - x/(1 + abs(x "
+       "D/d0)^m)^(1/m), m = p - 1; z(x) = y(x) at first loading, after reversals doubled by "
+       "Masing's rule",
+       "r > 0 softens, g > 0 resists the velocity. Joint slip dissipates. p = 2 with d0 is "
+       "hyperbolic.",
+       "Nayfeh and Mook, Nonlinear Oscillations, 1979; Iwan, J. Appl. Mech. 33 (1966); d0: Richard "
+       "and Abbott, J. Eng. Mech. Div. 101 (1975)"},
       {one_sided_gap,
        "one_sided_gap",
        kContact,

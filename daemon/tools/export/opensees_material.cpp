@@ -22,6 +22,15 @@ OpenSeesMaterial power_material(double factor, double power, const MaterialScale
            opensees_number(power)}};
 }
 
+Materials spring_materials(const Effect& e, const char* key, double power,
+                           const MaterialScale& scale, std::string& why) {
+  if (e.value("saturation_m") > 0) {
+    why = "OpenSees has no elastic material that saturates; without saturation_m it has one";
+    return {};
+  }
+  return {power_material(e.value(key), power, scale)};
+}
+
 /// Returns a spring in series with a slider that yields at the deformation `yield`.
 OpenSeesMaterial slider_material(double stiffness, double yield, const MaterialScale& scale) {
   return {"ElasticPP",
@@ -30,6 +39,11 @@ OpenSeesMaterial slider_material(double stiffness, double yield, const MaterialS
 }
 
 Materials bilinear_materials(const Effect& e, const MaterialScale& scale, std::string& why) {
+  if (e.value("sharpness") > 0) {
+    why =
+        "no material of OpenSees yields as roundly by Masing's rule; without sharpness it has one";
+    return {};
+  }
   if (e.value("strength_loss") > 0) {
     why = "no material of OpenSees yields like it and loses strength by its work";
     return {};
@@ -92,9 +106,9 @@ std::vector<OpenSeesMaterial> opensees_materials(const Effect& e, double height_
                                                  const MaterialScale& scale, std::string& why) {
   switch (e.kind) {
     case EffectKind::cubic_stiffness:
-      return {power_material(e.value("k3_npm3"), 3, scale)};
+      return spring_materials(e, "k3_npm3", 3, scale, why);
     case EffectKind::quadratic_stiffness:
-      return {power_material(e.value("k2_npm2"), 2, scale)};
+      return spring_materials(e, "k2_npm2", 2, scale, why);
     case EffectKind::quadratic_damping:
       return {{"Viscous",
                {opensees_number(e.value("c2_ns2pm2") * scale.force * scale.stretch * scale.stretch),

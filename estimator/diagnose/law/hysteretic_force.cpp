@@ -88,6 +88,11 @@ double weaker_of(const LawValues& values, double work) {
 
 }  // namespace
 
+double bent(double x, double sharpness) {
+  return x > 1 ? 1 / std::pow(1 + std::pow(1 / x, sharpness), 1 / sharpness)
+               : x / std::pow(1 + std::pow(x, sharpness), 1 / sharpness);
+}
+
 double power_of(double x, double p) {
   return p == 1 ? x : p == 2 ? x * x : p == 3 ? x * x * x : std::pow(x, p);
 }
@@ -202,9 +207,7 @@ double asymptotic_z(const LawValues& values, const std::vector<double>& memory, 
   const double sharpness = std::max(
       values.p[A::sharpness] * (1 - values.p[A::loss] * beyond / (kHalf + beyond)), kMinSharpness);
   const double x = std::max((d_now - now[kReversal_m]) / (way * dy), 0.0);
-  const double bent = x > 1 ? 1 / std::pow(1 + std::pow(1 / x, sharpness), 1 / sharpness)
-                            : x / std::pow(1 + std::pow(x, sharpness), 1 / sharpness);
-  return now[kReversalZ] + way * bent;
+  return now[kReversalZ] + way * bent(x, sharpness);
 }
 
 double slider_force(const LawValues& values, const std::vector<double>& at, double d, double work) {

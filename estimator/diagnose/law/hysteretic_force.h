@@ -43,6 +43,16 @@ struct AsymptoteIndex {
   enum : std::size_t { kh, dy, sharpness, loss };
 };
 
+/// Indices of the parameters of LawForm::masing. At first loading
+///
+///   z = d / (1 + |d/dy|^n)^(1/n), n the sharpness
+///
+/// and after reversals this curve doubled (SlipCurve). Soil that is hyperbolic has n = 1. Sources:
+/// Masing 1926; Kondner 1963; Richard and Abbott 1975.
+struct MasingIndex {
+  enum : std::size_t { kh, dy, sharpness };
+};
+
 /// Returns the spread of sliders that yield about as gradually as an asymptotic law with this
 /// sharpness.
 double spread_like(double sharpness);
@@ -54,6 +64,9 @@ double asymptotic_z(const LawValues& values, const std::vector<double>& memory, 
                     double d_now);
 /// Updates the memory after that step.
 void turn(std::vector<double>& memory, double z, double d, double d_now);
+
+/// Returns x / (1 + x^sharpness)^(1/sharpness), which approaches 1. x: >= 0.
+double bent(double x, double sharpness);
 
 /// Returns x^p for x >= 0. Fast for p = 1, 2 and 3.
 double power_of(double x, double p);

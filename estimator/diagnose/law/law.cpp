@@ -36,12 +36,28 @@ bool preslides(const LawValues& values) {
   return values.form == LawForm::friction && value_or(values.p, FrictionIndex::presliding, 0) > 0;
 }
 
+/// Returns z/dy of LawForm::masing at x = d/dy: x less the softening that slips.
+double masing_z(const std::vector<double>& p, const SlipCurve& slip, double x) {
+  return x - (1 - bent(1, p[MasingIndex::sharpness])) * slip.at(x);
+}
+
 /// Returns true if z follows a rate equation.
 bool has_z(LawForm form) {
   return form == LawForm::hysteresis || form == LawForm::pinched || form == LawForm::slip_lock;
 }
 
 }  // namespace
+
+Softening::Softening(double exponent, double saturation)
+    : exponent_(exponent), saturation_(saturation) {
+  if (saturation > 0) size_ = 1 / at(1);
+}
+
+double Softening::at(double x) const {
+  if (!(saturation_ > 0)) return signed_power(x, exponent_);
+  const double left = saturation_ * bent(std::abs(x) / saturation_, exponent_ - 1);
+  return size_ * std::copysign(std::abs(x) - left, x);
+}
 
 SlipCurve::End SlipCurve::follow(double x) const {
   if (x == now_.x) return {reversals_.size(), now_.z};
@@ -52,11 +68,10 @@ SlipCurve::End SlipCurve::follow(double x) const {
   while (open > 0) {
     const Point from = reversal(open - 1);
     const double closes_at = open > 1 ? reversal(open - 2).x : -from.x;
-    if ((x - closes_at) * direction <= 0)
-      return {open, from.z + 2 * direction * std::pow(0.5 * std::abs(x - from.x), exponent_)};
+    if ((x - closes_at) * direction <= 0) return {open, from.z + 2 * first_.at(0.5 * (x - from.x))};
     open = open > 1 ? open - 2 : 0;
   }
-  return {0, std::copysign(std::pow(std::abs(x), exponent_), x)};
+  return {0, first_.at(x)};
 }
 
 void SlipCurve::move(double x) {
@@ -115,8 +130,18 @@ LawMotion::LawMotion(const LawValues& values) : values_(values) {
   if (values.form == LawForm::sliders) memory_.assign(SliderIndex::kCount, 0.0);
   if (values.form == LawForm::asymptotic) memory_ = no_reversal(values);
   if (values.form == LawForm::slack) memory_ = first_slack(values.p);
-  if (values.form == LawForm::amplitude && value_or(values.p, A::slip, 0) > 0)
-    slip_.emplace(values.p[A::exponent]);
+  if (values.form == LawForm::saturating)
+    softening_.emplace(values.p[SaturationIndex::shape] + 1,
+                       values.p[SaturationIndex::d0] / values.deformation);
+  if (values.form == LawForm::masing) {
+    slip_.emplace(Softening(values.p[MasingIndex::sharpness] + 1, 1));
+    slip_unit_m_ = values.p[MasingIndex::dy];
+  }
+  if (values.form == LawForm::amplitude) {
+    slip_unit_m_ = values.deformation;
+    softening_.emplace(values.p[A::exponent], value_or(values.p, A::saturation, 0));
+    if (value_or(values.p, A::slip, 0) > 0) slip_.emplace(*softening_);
+  }
   if (!has_z(values.form)) return;
   shape_ = worn_shape(values, 0);
   const WornShape later = worn_shape(values, 1);
@@ -138,7 +163,7 @@ double LawMotion::next_z(double d) {
 double LawMotion::amplitude_z(double x) const {
   const double slips = value_or(values_.p, A::slip, 0);
   const double slip = slips > 0 ? slips * slip_->at(x) : 0;
-  return slips < 1 ? slip + (1 - slips) * signed_power(x, values_.p[A::exponent]) : slip;
+  return slips < 1 ? slip + (1 - slips) * softening_->at(x) : slip;
 }
 
 double LawMotion::plain_force(double d, double v, double t) {
@@ -147,7 +172,7 @@ double LawMotion::plain_force(double d, double v, double t) {
     case LawForm::power:
       return p[0] * signed_power(d / values_.deformation, p[1]);
     case LawForm::saturating:
-      return p[0] * p[1] * std::tanh(d / p[1]);
+      return p[SaturationIndex::force] * softening_->at(d / values_.deformation);
     case LawForm::hysteresis:
     case LawForm::pinched:
     case LawForm::slip_lock:
@@ -156,6 +181,8 @@ double LawMotion::plain_force(double d, double v, double t) {
       return p[0] * slider_force(values_, memory_, d, work_);
     case LawForm::asymptotic:
       return p[0] * p[1] * asymptotic_z(values_, memory_, z_, d_, d);
+    case LawForm::masing:
+      return p[0] * p[1] * masing_z(p, *slip_, d / p[1]);
     case LawForm::slack:
       return p[0] * slack_force(p, memory_, d);
     case LawForm::friction:
@@ -180,8 +207,8 @@ double LawMotion::plain_force(double d, double v, double t) {
 
 void LawMotion::accept(double d, double v, double t) {
   if (preslides(values_)) z_ = sliding_z(values_.p, z_, v_, v, t - t_);
-  if (slip_) slip_->move(d / values_.deformation);
-  if (is_hysteretic(values_.form)) {
+  if (slip_) slip_->move(d / slip_unit_m_);
+  if (is_hysteretic(values_.form) && values_.form != LawForm::masing) {
     const double dy = values_.p[HysteresisIndex::dy];
     if (values_.form == LawForm::sliders) {
       const double force = slider_force(values_, memory_, d, work_) / dy;

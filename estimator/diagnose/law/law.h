@@ -12,17 +12,31 @@
 
 namespace framewatch::estimator {
 
-/// Force of joints that slip a little at any motion: z = sgn(x) |x|^p at first loading. From every
-/// reversal (x_r, z_r) on,
+/// The part of a spring's force that softens, 1 at x = 1: a power of x, or a part that levels off
+/// (SaturationIndex).
+class Softening {
+ public:
+  /// exponent: above 0. saturation: d0; 0: a power.
+  explicit Softening(double exponent, double saturation = 0);
+
+  /// x: of any sign.
+  double at(double x) const;
+
+ private:
+  double exponent_, saturation_, size_ = 1;
+};
+
+/// Force of joints that slip a little at any motion: z(x) of a Softening at first loading. From
+/// every reversal (x_r, z_r) on,
 ///
-///   z = z_r + 2 sgn(x - x_r) |(x - x_r) / 2|^p
+///   z = z_r + 2 z((x - x_r) / 2)
 ///
 /// until its loop closes; then along the curve that the loop left. Sources: Masing 1926; Iwan, J.
 /// Appl. Mech. 33 (1966); Segalman, J. Appl. Mech. 72 (2005).
 class SlipCurve {
  public:
-  /// Starts at rest. exponent: p, above 0.
-  explicit SlipCurve(double exponent) : exponent_(exponent) {}
+  /// Starts at rest.
+  explicit SlipCurve(const Softening& first) : first_(first) {}
 
   /// Returns z after a step from the current position to x.
   double at(double x) const { return follow(x).z; }
@@ -41,7 +55,7 @@ class SlipCurve {
   };
   End follow(double x) const;
 
-  double exponent_;
+  Softening first_;
   std::vector<Point> reversals_;  ///< of the open loops, the outermost first
   Point now_{0, 0};
   double direction_ = 0;
@@ -96,7 +110,7 @@ class LawMotion {
 
  private:
   double plain_force(double d, double v, double t);
-  /// Returns z of LawForm::amplitude at d/D.
+  /// Returns the elastic and the slipping part of LawForm::amplitude at d/D.
   double amplitude_z(double x) const;
   /// Returns z of a hysteretic law at d. Caches the last one because a step ends where its force
   /// was evaluated.
@@ -110,7 +124,9 @@ class LawMotion {
   bool has_next_ = false;
   double next_d_ = 0, next_z_ = 0;
   std::vector<double> memory_;  ///< positions of sliders, last reversal, or slack
+  std::optional<Softening> softening_;
   std::optional<SlipCurve> slip_;
+  double slip_unit_m_ = 1;  ///< deformation that is 1 of slip_
 };
 
 /// Returns the force of a law, N, under a known motion. d, v: deformation (m) and rate (m/s) at

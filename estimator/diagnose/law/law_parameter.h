@@ -39,16 +39,17 @@ LawParameter fixed_parameter(double value);
 enum class LawForm {
   // restoring force over deformation and rate, at an element, between floors, or of whole frames
   power,       ///< a sgn(d) |d/D|^p
-  saturating,  ///< a d0 tanh(d/d0)
+  saturating,  ///< a s(d)/s(D), s the part of a spring that softens: SaturationIndex
   hysteresis,  ///< kh z, Bouc-Wen with any sharpness and sign: HysteresisIndex
   sliders,     ///< kh z, springs in series with sliders that yield one after the other: SliderIndex
   asymptotic,  ///< kh z, a curve from every reversal toward yielding: AsymptoteIndex
+  masing,      ///< kh z, round loading, doubled after every reversal: MasingIndex
   pinched,     ///< hysteresis with a slip zone around zero force
   slip_lock,   ///< hysteresis with a slip zone around zero deformation
   slack,       ///< a brace that becomes slack by its plastic deformation: SlackIndex
   friction,    ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: FrictionIndex
   power_damping,  ///< a sgn(v) |v/V|^p
-  amplitude,      ///< a ((1 - s) sgn(d) |d/D|^p + s slip(d/D)) + b sgn(v) |v/V|^q: SlipCurve
+  amplitude,      ///< a ((1 - s) z(d/D) + s slip(d/D)) + b sgn(v) |v/V|^q: AmplitudeIndex
   gap_positive,   ///< contact at clearance g: max(kg (d - g) + cg v, 0) while d > g
   gap_negative,   ///< contact toward negative deformation
   gap_both,       ///< both; kg < 0 softens
@@ -71,9 +72,22 @@ enum class LawForm {
   clipped,  ///< the readings of the axis are not used
 };
 
-/// Indices of the parameters of LawForm::amplitude. `slip` is s above; its default is 0.
+/// Indices of the parameters of LawForm::saturating. Parameter 0 is the force at the deformation D.
+///
+///   s(d) = d - d / (1 + |d/d0|^m)^(1/m)
+///
+/// A spring that loses s is hyperbolic for m = 1, nearly a hyperbolic tangent for m = 2.5, and has
+/// two slopes for large m. Far below d0, s is the power m + 1 of d. Source: Richard and Abbott, J.
+/// Eng. Mech. Div. 101 (1975).
+struct SaturationIndex {
+  enum : std::size_t { force, d0, shape };
+};
+
+/// Indices of the parameters of LawForm::amplitude. `slip` is s above and 0 by default. z(x) is
+/// sgn(x) |x|^p. With `saturation` (d0/D; 0 by default, none) it is s(x)/s(1) of SaturationIndex
+/// with the shape p - 1. slip(x) is z(x) at first loading: SlipCurve.
 struct AmplitudeIndex {
-  enum : std::size_t { elastic, exponent, damping, damping_exponent, slip };
+  enum : std::size_t { elastic, exponent, damping, damping_exponent, slip, saturation };
 };
 
 /// Returns true if the law is a force over deformations, of one element or of every element of a

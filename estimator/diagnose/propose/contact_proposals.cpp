@@ -16,9 +16,8 @@ using Eigen::VectorXcd;
 
 constexpr std::size_t kMaxFrames = 4;  ///< whole frames to try in one direction
 constexpr double kFirstShare = 0.05;   ///< of the stiffness that a start takes at the peak
-/// Start exponents of softening: with the squared deformation, and fastest at the smallest
-/// deformations.
-constexpr double kSoftens = 2, kSoftensSooner = 1.3;
+constexpr double kSoftens = 2;         ///< exponent of the deformation at the start
+constexpr double kLevelsOff = 1;       ///< saturation at the start, of the largest deformation
 
 MeasuredDeformation motion_of(const Fitter& fitter, const Localisation& place, const LawPort& port,
                               std::size_t record) {
@@ -85,20 +84,22 @@ std::vector<Proposal> amplitude_proposals(const Fitter& fitter, const Localisati
   for (const LawPort& port : law_ports(fitter.plant(), place.model, effect))
     k = std::max(k, place.model.theta[port.element]);
   const double force = kFirstShare * k * effect.deformation;
-  const auto softening = [&](double exponent) {
-    ModelEffect out = effect;
-    out.parameters = {
-        linear_parameter(-force, 0.2 * force), bounded_parameter(exponent, 0.02, 1.02, 6, false),
-        linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
-    return out;
-  };
+  ModelEffect softening = effect;
+  softening.parameters = {
+      linear_parameter(-force, 0.2 * force), bounded_parameter(kSoftens, 0.02, 1.02, 6, false),
+      linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
+  ModelEffect saturating = softening;  // from hyperbolic
+  saturating.parameters[AmplitudeIndex::exponent].low = 1.3;
+  saturating.parameters.push_back(fixed_parameter(0));
+  saturating.parameters.push_back(logarithmic_parameter(kLevelsOff, 0.05, 5));
+  saturating.parameters.back().free = false;
   ModelEffect slipping = effect;
   slipping.parameters = {bounded_parameter(-force, 0.2 * force, -1e300, 0),
                          bounded_parameter(1.5, 0.02, 1.02, 6, false), fixed_parameter(0),
                          fixed_parameter(2), fixed_parameter(1)};
   const EffectKind kind = EffectKind::amplitude_dependence;
-  return {proposal_of(place, softening(kSoftens), kind, 0),
-          proposal_of(place, softening(kSoftensSooner), kind, 0),
+  return {proposal_of(place, std::move(softening), kind, 0),
+          proposal_of(place, std::move(saturating), kind, 0),
           proposal_of(place, std::move(slipping), kind, 0)};
 }
 

@@ -102,6 +102,18 @@ LawStarts asymptotic(const LawScale& s) {
   return out;
 }
 
+/// Returns soil and joints whose loops are their first loading doubled.
+LawStarts masing(const LawScale& s) {
+  LawStarts out{F::masing, EffectKind::bilinear_hysteresis, {}};
+  for (const double sharpness : {0.8, 1.6, 4.0})
+    for (const double yield : shrinking(1.5, 0.02, 0.6))
+      out.shapes.push_back(
+          {linear_parameter(1, 0.01 * s.stiffness),
+           logarithmic_parameter(yield * s.deformation, 1e-4 * s.deformation, 5 * s.deformation),
+           logarithmic_parameter(sharpness, 0.2, 60)});
+  return out;
+}
+
 /// offset; slip_work 0: the slip zone is open from the start.
 Shape pinched(const LawScale& s, double yield, double exponent, double slip, double width,
               double offset, double slip_work) {
@@ -157,6 +169,18 @@ LawStarts slack(const LawScale& s) {
           {linear_parameter(1, 0.01 * s.stiffness),
            logarithmic_parameter(yield * s.deformation, 1e-3 * s.deformation, 2 * s.deformation),
            held(play * s.deformation, 0.005 * s.deformation, 0, s.deformation)});
+  return out;
+}
+
+/// Returns springs that soften or harden up to a limit, from hyperbolic to two slopes.
+LawStarts saturating(const LawScale& s) {
+  LawStarts out{F::saturating, EffectKind::quadratic_stiffness, {}};
+  for (const double shape : {1.0, 2.5, 8.0})
+    for (const double d0 : {0.1, 0.25, 0.6})
+      out.shapes.push_back(
+          {linear_parameter(1, 0.01 * s.force()),
+           logarithmic_parameter(d0 * s.deformation, 0.02 * s.deformation, 5 * s.deformation),
+           logarithmic_parameter(shape, 0.3, 30)});
   return out;
 }
 
@@ -225,11 +249,7 @@ std::vector<LawStarts> plain_starts(const LawScale& s) {
   for (const double p : {1.5, 2.0, 3.0, 5.0})
     out.back().shapes.push_back(
         {linear_parameter(1, 0.01 * s.force()), bounded_parameter(p, 0.02, 1.2, 9)});
-  out.push_back({F::saturating, EffectKind::quadratic_stiffness, {}});
-  for (const double d0 : {0.1, 0.25, 0.6})
-    out.back().shapes.push_back(
-        {linear_parameter(1, 0.01 * s.stiffness),
-         logarithmic_parameter(d0 * s.deformation, 0.02 * s.deformation, 3 * s.deformation)});
+  out.push_back(saturating(s));
   out.push_back(friction(s, false));
   out.push_back(friction(s, true));
   out.push_back({F::power_damping, EffectKind::quadratic_damping, {}});
@@ -242,7 +262,7 @@ std::vector<LawStarts> plain_starts(const LawScale& s) {
 
 std::vector<LawStarts> hysteretic_starts(const LawScale& s, bool pinching) {
   std::vector<LawStarts> out{bouc_wen(s, 1), bouc_wen(s, 2), bouc_wen(s, kBilinear), degrading(s),
-                             hardening(s),   sliders(s),     asymptotic(s)};
+                             hardening(s),   sliders(s),     asymptotic(s),          masing(s)};
   if (pinching)
     for (LawStarts& one :
          std::vector<LawStarts>{slip_about_force(s), slip_that_opens(s), slip_lock(s), slack(s)})
@@ -276,7 +296,8 @@ void free_shape(ModelEffect& effect) {
       release(FrictionIndex::presliding);
       break;
     case F::amplitude:
-      release(1);
+      release(AmplitudeIndex::exponent);
+      release(AmplitudeIndex::saturation);
       break;
     case F::sliders:
       release(SliderIndex::loss);

@@ -65,6 +65,19 @@ ModelEffect without_slip(const ModelEffect& pinched) {
   return out;
 }
 
+ModelEffect two_slopes(const ModelEffect& contact) {
+  constexpr double kCorner = 20;  // shape
+  const double stiffness = contact.parameters[0].plain(), d = contact.deformation;
+  const double gap = std::max(contact.parameters[1].plain(), 1e-3 * d);
+  const double force = stiffness * (d - gap * bent(d / gap, kCorner));
+  ModelEffect out = contact;
+  out.form = LawForm::saturating;
+  out.parameters = {linear_parameter(force, 0.02 * std::abs(force)),
+                    logarithmic_parameter(gap, 1e-3 * d, 5 * d),
+                    logarithmic_parameter(kCorner, 0.3, 30)};
+  return out;
+}
+
 EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) {
   switch (effect.form) {
     case LawForm::power:
@@ -78,6 +91,7 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) 
                                                : EffectKind::bouc_wen;
     case LawForm::sliders:
     case LawForm::asymptotic:
+    case LawForm::masing:
       return effect.parameters[1].plain() < kRigid * effect.deformation
                  ? EffectKind::coulomb_friction
                  : EffectKind::bilinear_hysteresis;

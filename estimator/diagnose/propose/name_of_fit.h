@@ -16,6 +16,9 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment);
 /// force. Equivalent to a slip zone as wide as the whole loop.
 ModelEffect without_slip(const ModelEffect& pinched);
 
+/// Returns the saturating spring (LawForm::saturating) with the two slopes of a contact.
+ModelEffect two_slopes(const ModelEffect& contact);
+
 /// Returns the exponent of the power law that, with a linear spring, is nearest to a spring's force
 /// over the deformations of a sine. effect: an element law without memory.
 double nearest_exponent(const ModelEffect& effect);

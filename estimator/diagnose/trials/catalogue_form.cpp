@@ -90,6 +90,7 @@ void set_hysteresis(const ModelEffect& e, Effect& out) {
     out.set("strength_loss", value_or(p, SliderIndex::loss, 0));
   }
   if (e.form == LawForm::asymptotic) out.set("spread", spread_like(p[AsymptoteIndex::sharpness]));
+  if (e.form == LawForm::masing) out.set("sharpness", p[MasingIndex::sharpness]);
   if (e.form == LawForm::slack) {
     out.set("slip_ratio", 0);
     out.set("slack", 1);
@@ -133,6 +134,16 @@ void set_friction(const ModelEffect& e, Effect& out) {
   if (e.parameters.size() > 4) out.set("presliding_m", p(4));
 }
 
+/// Returns the largest share of the deformation D at which a frame that loses `share` of its
+/// stiffness at D loses no more than all. saturation: AmplitudeIndex.
+double nearer_of(double share, double exponent, double saturation) {
+  if (share <= 1 || exponent <= 1) return 1;
+  const double shape = exponent - 1;
+  if (!(saturation > 0)) return std::pow(share, -1 / shape);
+  const double at_last = share / (1 - saturation * bent(1 / saturation, shape));
+  return saturation * std::pow(std::pow(1 - 1 / at_last, -shape) - 1, 1 / shape);
+}
+
 /// At a deformation of a whole frame, as shares of the mean stiffness.
 void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e, Effect& out) {
   double k = 0;
@@ -141,26 +152,32 @@ void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e,
     k += model.theta[port.element] / static_cast<double>(ports.size());
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   const double share = -p(0) / (k * e.deformation), exponent = p(1);
+  const bool saturates = e.parameters.size() > AmplitudeIndex::saturation;
+  const double saturation = saturates ? p(AmplitudeIndex::saturation) : 0;
   // An element cannot lose more than all its stiffness, so a larger share becomes the same law at a
   // smaller deformation.
-  const double nearer = share > 1 && exponent > 1 ? std::pow(share, -1 / (exponent - 1)) : 1;
-  out.set("softening", share * std::pow(nearer, exponent - 1));
+  const double nearer = nearer_of(share, exponent, saturation);
+  out.set("softening", share * Softening(exponent, saturation).at(nearer) / nearer);
   out.set("at_m", nearer * e.deformation);
   out.set("exponent", exponent);
   out.set("damping_s2pm", p(2) / (k * e.rate * e.rate));
   if (e.parameters.size() > AmplitudeIndex::slip) out.set("slip", p(AmplitudeIndex::slip));
+  if (saturates) out.set("saturation_m", saturation * e.deformation);
 }
 
-/// Returns the force of a spring's cubic or quadratic part at the largest deformation, for any
-/// shape.
-double curved_force(const ModelEffect& e) {
-  if (e.form == LawForm::power) return e.parameters[0].plain();
-  Eigen::VectorXd d(1);
-  d << e.deformation;
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
-  const double at_end = law_force(e.law(0), d, none, 1)[0];
-  d << 1e-3 * e.deformation;
-  return at_end - 1e3 * law_force(e.law(0), d, none, 1)[0];
+/// Sets a spring that is the power `p` of the deformation, or that far below its saturation.
+void set_spring(const ModelEffect& fitted, const char* key, double p, Effect& out) {
+  if (fitted.form == LawForm::power) {
+    out.set(key, fitted.parameters[0].plain() / std::pow(fitted.deformation, p));
+    return;
+  }
+  using S = SaturationIndex;
+  const ModelEffect e = fitted.form == LawForm::saturating ? fitted : two_slopes(fitted);
+  const double d0 = e.parameters[S::d0].plain(), shape = e.parameters[S::shape].plain();
+  const double lost = e.deformation - d0 * bent(e.deformation / d0, shape);
+  out.set(key, e.parameters[S::force].plain() / (lost * shape * std::pow(d0, p - 1)));
+  out.set("saturation_m", d0);
+  out.set("shape", shape);
 }
 
 /// Sets the values of effects of elements. Leaves other effects unchanged.
@@ -168,10 +185,10 @@ void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   switch (out.kind) {
     case EffectKind::cubic_stiffness:
-      out.set("k3_npm3", curved_force(e) / std::pow(e.deformation, 3));
+      set_spring(e, "k3_npm3", 3, out);
       break;
     case EffectKind::quadratic_stiffness:
-      out.set("k2_npm2", curved_force(e) / std::pow(e.deformation, 2));
+      set_spring(e, "k2_npm2", 2, out);
       break;
     case EffectKind::bilinear_hysteresis:
     case EffectKind::bouc_wen:

@@ -59,9 +59,11 @@ LawForm form_of(const Effect& effect) {
   switch (effect.kind) {
     case cubic_stiffness:
     case quadratic_stiffness:
+      return effect.value("saturation_m") > 0 ? LawForm::saturating : LawForm::power;
     case p_delta:
       return LawForm::power;
     case bilinear_hysteresis:
+      if (effect.value("sharpness") > 0) return LawForm::masing;
       return effect.value("spread") > 0 || effect.value("strength_loss") > 0 ? LawForm::sliders
                                                                              : LawForm::hysteresis;
     case bouc_wen:
@@ -123,6 +125,15 @@ void set_power(const Plant& plant, const Effect& effect, ModelEffect& e) {
                   bounded_parameter(p, 0.02, 1.2, 9)};
 }
 
+void set_saturating(const Effect& effect, ModelEffect& e) {
+  const bool cubic = effect.kind == EffectKind::cubic_stiffness;
+  const double d = e.deformation, d0 = effect.value("saturation_m"), shape = effect.value("shape");
+  const double first = effect.value(cubic ? "k3_npm3" : "k2_npm2") * std::pow(d0, cubic ? 2 : 1);
+  e.parameters = {sized(first * shape * (d - d0 * bent(d / d0, shape))),
+                  logarithmic_parameter(d0, 1e-4 * d, 1e3 * d),
+                  logarithmic_parameter(shape, 0.1, 60)};
+}
+
 /// kh, dy, exponent, beta.
 std::vector<LawParameter> hysteretic_shape(double kh, double dy, double exponent, double beta,
                                            double peak) {
@@ -181,7 +192,10 @@ void set_amplitude(const Plant& plant, const Effect& effect, ModelEffect& e) {
   e.parameters = {sized(-effect.value("softening") * k * e.deformation),
                   fixed_parameter(effect.value("exponent")),
                   sized(effect.value("damping_s2pm") * k * e.rate * e.rate), fixed_parameter(2)};
-  if (effect.value("slip") > 0) e.parameters.push_back(fixed_parameter(effect.value("slip")));
+  const double slip = effect.value("slip"), saturation = effect.value("saturation_m");
+  if (slip > 0 || saturation > 0) e.parameters.push_back(fixed_parameter(slip));
+  if (saturation > 0)
+    e.parameters.push_back(logarithmic_parameter(saturation / e.deformation, 1e-4, 1e3));
 }
 
 void set_changing(const std::vector<RecordSegment>& segments, const Effect& effect,
@@ -220,11 +234,19 @@ void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>
     case LawForm::power:
       set_power(plant, effect, e);
       break;
+    case LawForm::saturating:
+      set_saturating(effect, e);
+      break;
     case LawForm::hysteresis:
     case LawForm::sliders:
     case LawForm::pinched:
     case LawForm::slip_lock:
       set_hysteresis(effect, e);
+      break;
+    case LawForm::masing:
+      e.parameters = {sized(value("kh_npm")),
+                      logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
+                      logarithmic_parameter(value("sharpness"), 0.1, 60)};
       break;
     case LawForm::slack:
       e.parameters = {sized(value("kh_npm")),

@@ -19,19 +19,6 @@ namespace {
 
 constexpr int kFitSteps = 5, kOnTheWay = 2;  ///< of the last fit, and of each before it
 
-/// Replaces a spring of another shape by the equivalent power law.
-void as_power(ModelEffect& effect) {
-  Eigen::VectorXd d(1), none = Eigen::VectorXd::Zero(1);
-  d << effect.deformation;
-  const double at_end = law_force(effect.law(0), d, none, 1)[0];
-  d << 1e-3 * effect.deformation;
-  const double at_start = 1e3 * law_force(effect.law(0), d, none, 1)[0];
-  const double force = at_end - at_start;
-  effect.form = LawForm::power;
-  effect.parameters = {linear_parameter(force, 0.02 * std::max(std::abs(force), 1e-12)),
-                       bounded_parameter(2, 0.02, 1.2, 9)};
-}
-
 void fix_exponent(EffectKind kind, ModelEffect& effect) {
   if (kind == EffectKind::coulomb_friction && effect.form == LawForm::power_damping) {
     effect.form = LawForm::friction;
@@ -54,7 +41,7 @@ void fix_exponent(EffectKind kind, ModelEffect& effect) {
   }
   const bool elastic =
       kind == EffectKind::cubic_stiffness || kind == EffectKind::quadratic_stiffness;
-  if (elastic && effect.form != LawForm::power) as_power(effect);
+  if (elastic && is_contact(effect.form)) effect = two_slopes(effect);
   if (effect.form != LawForm::power && effect.form != LawForm::power_damping) return;
   LawParameter& exponent = effect.parameters[1];
   const double value = kind == EffectKind::cubic_stiffness ? 3 : 2;

@@ -70,6 +70,25 @@ TEST(ElementLaw, ConservesEnergyWithoutMemory) {
   }
 }
 
+TEST(ElementLaw, ASaturatingSpringConservesEnergyAndLevelsOff) {
+  constexpr double kLevelsOff_m = 1e-3, kStiffness_npm = 2e4, kFar_m = 1e3;
+  Effect hyperbolic = example(EffectKind::quadratic_stiffness);
+  hyperbolic.set("k2_npm2", -kStiffness_npm / kLevelsOff_m);
+  hyperbolic.set("saturation_m", kLevelsOff_m);
+  Led led(hyperbolic);
+  led.cycles(1);
+  EXPECT_NEAR(led.energy_j(), 0, kClosed * led.largest() * kPeak_m);
+  led.to(2e-3);  // k d/(1 + d/d0) - k d
+  EXPECT_NEAR(led.force(), kStiffness_npm * 2e-3 * (1.0 / 3 - 1), 1e-9);
+
+  Effect cubic = example(EffectKind::cubic_stiffness), saturates = cubic;
+  saturates.set("saturation_m", kFar_m);
+  Led power(cubic), far(saturates);
+  power.to(kPeak_m);
+  far.to(kPeak_m);
+  EXPECT_NEAR(far.force(), power.force(), 1e-6 * power.force());
+}
+
 TEST(ElementLaw, HysteresisFrictionAndDampingDissipate) {
   using enum EffectKind;
   for (const EffectKind kind :
@@ -98,6 +117,23 @@ TEST(ElementLaw, LoopsHaveTheirClosedForms) {
   const double w = 2 * M_PI / kPeriod_s;
   EXPECT_NEAR(quadratic.energy_j(), 8.0 / 3 * 1e3 * w * w * std::pow(kPeak_m, 3),
               1e-4 * quadratic.energy_j());
+}
+
+TEST(ElementLaw, RoundYieldingLosesTheAreaOfMasingsLoop) {
+  constexpr double kStiffness_npm = 1e4, kYields_m = 2e-3;
+  Effect effect = example(EffectKind::bilinear_hysteresis);
+  effect.set("kh_npm", kStiffness_npm);
+  effect.set("dy_m", kYields_m);
+  effect.set("sharpness", 1);
+  Led led(effect);
+  led.cycles(1);
+  const double after_one = led.energy_j();
+  led.cycles(1);
+  // 8 times the integral of first loading, k dy (d - dy log(1 + d/dy)), less 4 times its end.
+  const double x = kPeak_m / kYields_m;
+  const double unit = kStiffness_npm * kYields_m * kYields_m;
+  EXPECT_NEAR(led.energy_j() - after_one, unit * (8 * (x - std::log1p(x)) - 4 * x * x / (1 + x)),
+              0.01 * unit);
 }
 
 TEST(ElementLaw, PositiveSizesPushBack) {

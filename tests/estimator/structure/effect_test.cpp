@@ -104,6 +104,16 @@ TEST(EffectProblems, NameTheKeyAndTheRule) {
   EXPECT_EQ(first_problem(slips), "none");
   slips.set("softening", -0.1);
   EXPECT_NE(first_problem(slips).find("softening: must not be below 0"), std::string::npos);
+  Effect round = test::example_effect(bilinear_hysteresis, m);
+  round.set("sharpness", 1);
+  EXPECT_EQ(first_problem(round), "none");
+  round.set("strength_loss", 0.1);
+  EXPECT_NE(first_problem(round).find("strength_loss: must be 0 with sharpness"),
+            std::string::npos);
+  round.set("strength_loss", 0);
+  round.set("sharpness", 0.1);
+  EXPECT_EQ(first_problem(round),
+            "sharpness|bilinear_hysteresis.sharpness: must be 0 or at least 0.2");
   Effect wrong = test::example_effect(cubic_stiffness, m);
   wrong.place.kind = PlaceKind::channel;
   EXPECT_NE(first_problem(wrong).find("cannot be at this kind of place"), std::string::npos);

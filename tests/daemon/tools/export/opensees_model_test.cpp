@@ -241,6 +241,17 @@ TEST(OpenSeesModel, RefusesByNameWhatOpenSeesLacks) {
     EXPECT_EQ(problems[0].find(std::string(name_of(kind)) + " at "), 0u) << problems[0];
     EXPECT_NE(problems[0].find(fmt::format("--without {}", name_of(kind))), std::string::npos);
   }
+  for (const EffectKind kind : {EffectKind::cubic_stiffness, EffectKind::quadratic_stiffness}) {
+    Effect levels_off = example_effect(kind, table);
+    EXPECT_TRUE(problems_of({table.structure, table.theta, {}, {levels_off}}).empty());
+    levels_off.set("saturation_m", 2e-3);
+    const auto problems = problems_of({table.structure, table.theta, {}, {levels_off}});
+    ASSERT_EQ(problems.size(), 1u) << name_of(kind);
+    EXPECT_NE(problems[0].find("saturation_m"), std::string::npos) << problems[0];
+  }
+  Effect round = example_effect(EffectKind::bilinear_hysteresis, table);
+  round.set("sharpness", 1);
+  EXPECT_EQ(problems_of({table.structure, table.theta, {}, {round}}).size(), 1u);
   const test::TableModel rigid = test::table_model(estimator::FloorModel::rigid);
   for (const EffectKind kind : {EffectKind::base_rocking, EffectKind::floor_flexibility})
     EXPECT_EQ(problems_of({rigid.structure, rigid.theta, {}, {example_effect(kind, rigid)}}).size(),

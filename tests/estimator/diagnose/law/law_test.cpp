@@ -61,7 +61,7 @@ TEST(Law, ForcesMatchTheFormulas) {
 TEST(Law, OnlyElementLawsHaveAForceHere) {
   for (const LawForm form :
        {LawForm::power, LawForm::saturating, LawForm::hysteresis, LawForm::sliders,
-        LawForm::asymptotic, LawForm::pinched, LawForm::slip_lock, LawForm::slack,
+        LawForm::asymptotic, LawForm::masing, LawForm::pinched, LawForm::slip_lock, LawForm::slack,
         LawForm::friction, LawForm::power_damping, LawForm::amplitude, LawForm::gap_positive,
         LawForm::gap_negative, LawForm::gap_both, LawForm::changing})
     EXPECT_TRUE(is_element_law(form)) << static_cast<int>(form);
@@ -187,6 +187,32 @@ TEST(Law, SlippingJointsMatchTheSimulator) {
   EXPECT_LT((force - simulated).cwiseAbs().maxCoeff(), 0.01 * most);
 }
 
+TEST(Law, RoundYieldingMatchesTheSimulator) {
+  const VectorXd d = growing_cycles(800);
+  for (const double sharpness : {0.6, 1.0, 3.0, 20.0}) {
+    Effect effect = make_effect(EffectKind::bilinear_hysteresis, test::frame_place(0));
+    effect.set("kh_npm", kStiffness);
+    effect.set("dy_m", kYields_m);
+    effect.set("sharpness", sharpness);
+    const VectorXd force =
+        force_over({LawForm::masing, {kStiffness, kYields_m, sharpness}, 1, 1}, d);
+    EXPECT_LT((force - simulated_force(effect, d)).cwiseAbs().maxCoeff(),
+              0.01 * force.cwiseAbs().maxCoeff())
+        << sharpness;
+  }
+}
+
+/// Soil: hyperbolic at first loading, and from a reversal toward its mirror image.
+TEST(Law, RoundYieldingDoublesItsFirstLoading) {
+  VectorXd d(3);
+  d << 3 * kYields_m, kYields_m, -3 * kYields_m;
+  const VectorXd z =
+      force_over({LawForm::masing, {kStiffness, kYields_m, 1}, 1, 1}, d) / (kStiffness * kYields_m);
+  EXPECT_NEAR(z[0], 3.0 / 4, kRounding);
+  EXPECT_NEAR(z[1], 3.0 / 4 - 2 * 1.0 / 2, kRounding);
+  EXPECT_NEAR(z[2], -3.0 / 4, kRounding);
+}
+
 /// Area of Masing's loop: 8 times the integral of first loading minus 4 times its end.
 TEST(Law, SlippingJointsDissipateTheAreaOfTheirLoop) {
   constexpr double kExponent = 1.5;
@@ -211,6 +237,76 @@ TEST(Law, ASmallLoopDoesNotChangeTheLargeOne) {
   VectorXd back(3);
   back << 1, -1, -1.5;  // closed at the other end: first loading again
   EXPECT_NEAR(force_over(law, back)[2], std::pow(1.5, 1.5), 1e-12);
+}
+
+/// A spring that loses the saturating part of its force, at D and d0 of 4 and 1 yield deformations.
+double left_of_a_spring(double shape, double d) {
+  constexpr double kD_m = 4 * kYields_m;
+  const double lost = kD_m - kYields_m * bent(kD_m / kYields_m, shape);
+  return d + LawMotion({LawForm::saturating, {-lost, kYields_m, shape}, kD_m, 1}).force(d, 0, 0);
+}
+
+TEST(Law, ASpringSoftensByItsShape) {
+  for (const double x : {-3.0, -0.4, 0.01, 0.7, 2.0, 30.0}) {
+    const double d = x * kYields_m;
+    EXPECT_NEAR(left_of_a_spring(1, d), d / (1 + std::abs(x)), 1e-15) << "hyperbolic";
+    EXPECT_NEAR(left_of_a_spring(2.5, d), kYields_m * std::tanh(x), 0.03 * kYields_m) << "tanh";
+    EXPECT_NEAR(left_of_a_spring(60, d), std::clamp(d, -kYields_m, kYields_m), 0.02 * kYields_m)
+        << "two slopes";
+  }
+}
+
+TEST(Law, FarBelowItsSaturationASpringIsAPower) {
+  constexpr double kFar_m = 1e3, kD_m = 0.1;
+  for (const double shape : {1.0, 1.5, 2.0}) {
+    const LawValues far{LawForm::saturating, {7, kFar_m, shape}, kD_m, 1};
+    const LawValues power{LawForm::power, {7, shape + 1}, kD_m, 1};
+    for (const double d : {-0.08, 0.03, 0.1})
+      EXPECT_NEAR(LawMotion(far).force(d, 0, 0), LawMotion(power).force(d, 0, 0), 1e-3) << shape;
+  }
+}
+
+TEST(Law, SaturatingSpringsMatchTheSimulator) {
+  const VectorXd d = growing_cycles(400);
+  for (const EffectKind kind : {EffectKind::quadratic_stiffness, EffectKind::cubic_stiffness})
+    for (const double shape : {0.6, 1.0, 2.5, 20.0}) {
+      Effect effect = make_effect(kind, test::frame_place(0));
+      const int power = kind == EffectKind::cubic_stiffness ? 2 : 1;
+      effect.values[0] = -kStiffness / (shape * std::pow(kYields_m, power));
+      effect.set("saturation_m", kYields_m);
+      effect.set("shape", shape);
+      const double peak = 4 * kYields_m, lost = peak - kYields_m * bent(4, shape);
+      const VectorXd force =
+          force_over({LawForm::saturating, {-kStiffness * lost, kYields_m, shape}, peak, 1}, d);
+      EXPECT_LT((force - simulated_force(effect, d)).cwiseAbs().maxCoeff(),
+                1e-9 * force.cwiseAbs().maxCoeff())
+          << name_of(kind) << " " << shape;
+    }
+}
+
+TEST(Law, FramesThatSaturateMatchTheSimulator) {
+  constexpr double kAt_m = 4 * kYields_m, kSoftening = 0.6, kSaturation = 0.3;
+  const VectorXd d = growing_cycles(800);
+  for (const double exponent : {1.6, 2.0, 3.5})
+    for (const double slip : {0.0, 1.0}) {
+      Effect effect =
+          make_effect(EffectKind::amplitude_dependence, test::building_place(Direction::x));
+      effect.set("softening", kSoftening);
+      effect.set("at_m", kAt_m);
+      effect.set("exponent", exponent);
+      effect.set("slip", slip);
+      effect.set("saturation_m", kSaturation * kAt_m);
+      const LawValues law{LawForm::amplitude,
+                          {-kSoftening * kStiffness * kAt_m, exponent, 0, 2, slip, kSaturation},
+                          kAt_m,
+                          1};
+      const VectorXd force = force_over(law, d);
+      const VectorXd simulated = simulated_force(*make_amplitude_law(effect, kStiffness), d);
+      EXPECT_LT((force - simulated).cwiseAbs().maxCoeff(), 0.01 * force.cwiseAbs().maxCoeff())
+          << exponent << " " << slip;
+      LawMotion first(law);
+      EXPECT_NEAR(first.force(kAt_m, 0, 0), law.p[0], 1e-6) << "softening is that at at_m";
+    }
 }
 
 TEST(Law, SlipLocksAwayFromZeroDeformation) {

@@ -46,6 +46,27 @@ TEST(NameOfFit, ExponentDistinguishesQuadraticFromCubic) {
   EXPECT_EQ(name(effect_with(LawForm::power, {-1, 9})), "cubic_stiffness");
 }
 
+TEST(NameOfFit, ASaturatingSpringHasTheNameOfTheNearestPower) {
+  const auto saturating = [](double d0_share, double shape) {
+    return name(effect_with(LawForm::saturating, {-1, d0_share * kPeak_m, shape}));
+  };
+  EXPECT_EQ(saturating(10, 1), "quadratic_stiffness");
+  EXPECT_EQ(saturating(10, 2), "cubic_stiffness");
+  EXPECT_EQ(saturating(1, 1), "quadratic_stiffness");
+  EXPECT_EQ(saturating(0.1, 1), "quadratic_stiffness");
+}
+
+TEST(NameOfFit, TwoSlopesAreASaturatingSpring) {
+  ModelEffect contact = effect_with(LawForm::gap_both, {-1e6, 0.4 * kPeak_m, 0});
+  const ModelEffect spring = two_slopes(contact);
+  EXPECT_EQ(name(spring), name(contact));
+  for (const double share : {-1.0, 0.2, 0.7}) {
+    const double d = share * kPeak_m;
+    EXPECT_NEAR(LawMotion(spring.law(0)).force(d, 0, 0), LawMotion(contact.law(0)).force(d, 0, 0),
+                0.02 * 1e6 * kPeak_m);
+  }
+}
+
 TEST(NameOfFit, YieldAndSharpnessDistinguishHysteresis) {
   const auto hysteresis = [](double yield_share, double exponent) {
     return name(effect_with(LawForm::hysteresis, {1e6, yield_share * kPeak_m, exponent, 0.5}));
@@ -57,6 +78,15 @@ TEST(NameOfFit, YieldAndSharpnessDistinguishHysteresis) {
   // A law that yields at once is friction, however sharp it is.
   EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 40), "coulomb_friction");
   EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 2), "coulomb_friction");
+}
+
+TEST(NameOfFit, RoundYieldingIsFrictionIfItYieldsAtOnce) {
+  const auto round = [](double yield_share) {
+    return name(effect_with(LawForm::masing, {1e6, yield_share * kPeak_m, 1}));
+  };
+  EXPECT_EQ(round(0.3), "bilinear_hysteresis");
+  EXPECT_EQ(round(kRigidShare * (1 + kNear)), "bilinear_hysteresis");
+  EXPECT_EQ(round(kRigidShare * (1 - kNear)), "coulomb_friction");
 }
 
 TEST(NameOfFit, IgnoresASlipZoneAsWideAsTheLoop) {

@@ -98,6 +98,55 @@ TEST(CatalogueForm, SignsSurviveTheRoundTrip) {
   }
 }
 
+TEST(CatalogueForm, SaturationSurvivesTheRoundTrip) {
+  const Scene scene;
+  using enum EffectKind;
+  for (const EffectKind kind : {cubic_stiffness, quadratic_stiffness, amplitude_dependence})
+    for (const double shape : {0.7, 1.0, 4.0}) {
+      Effect effect = test::example_effect(kind, scene.model);
+      effect.set("saturation_m", 3e-3);
+      if (kind == amplitude_dependence)
+        effect.set("exponent", shape + 1);
+      else
+        effect.set("shape", shape);
+      const Effect back = scene.round_trip(effect);
+      for (const EffectParameter& p : describe(kind).parameters)
+        EXPECT_NEAR(back.value(p.key), effect.value(p.key),
+                    kRounding * (1 + std::abs(effect.value(p.key))))
+            << name_of(kind) << " " << p.key << " " << shape;
+    }
+}
+
+TEST(CatalogueForm, SharpnessSurvivesTheRoundTrip) {
+  const Scene scene;
+  Effect effect = test::example_effect(EffectKind::bilinear_hysteresis, scene.model);
+  for (const double sharpness : {0.7, 1.0, 8.0}) {
+    effect.set("sharpness", sharpness);
+    const Effect back = scene.round_trip(effect);
+    for (const EffectParameter& p : describe(effect.kind).parameters)
+      EXPECT_NEAR(back.value(p.key), effect.value(p.key), kRounding * (1 + effect.value(p.key)))
+          << p.key;
+  }
+}
+
+TEST(CatalogueForm, AFrameThatWouldLoseMoreThanAllSaturatesAtASmallerDeformation) {
+  const Scene scene;
+  Effect effect = test::example_effect(EffectKind::amplitude_dependence, scene.model);
+  effect.set("saturation_m", 0.5 * effect.value("at_m"));
+  Model fitted = initial_model(scene.plant);
+  const FoundEffect found = add_known(scene.plant, scene.segments, {effect}, fitted).front();
+  fitted.effects.front().parameters[0].value *= 4;  // loses 1.2 of it at at_m
+  const Effect back = catalogue_effect(scene.plant, scene.segments, found, fitted);
+  EXPECT_NEAR(back.value("softening"), 1, kRounding);
+  EXPECT_LT(back.value("at_m"), effect.value("at_m"));
+  const auto share = [](const Effect& e, double d) {
+    const double x = d / e.value("at_m"), q = e.value("saturation_m") / e.value("at_m");
+    return e.value("softening") * Softening(e.value("exponent"), q).at(x) / x;
+  };
+  for (const double d : {1e-3, 8e-3, 40e-3})
+    EXPECT_NEAR(share(back, d), 4 * share(effect, d), kRounding);
+}
+
 TEST(CatalogueForm, AFractionalPowerMatchesTheCatalogueAtTheLargestDeformation) {
   // 700 N at 4 mm, for any exponent.
   const Scene scene;
