@@ -25,6 +25,7 @@
 #include "estimator/diagnose/trials/trial_names.h"
 #include "estimator/diagnose/trials/trials.h"
 #include "estimator/diagnose/verdict/effect_search.h"
+#include "estimator/diagnose/verdict/evidence.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
@@ -377,6 +378,7 @@ Diagnosis diagnose(const Plant& plant, const std::vector<RecordSegment>& segment
   std::vector<RecordSegment> straight = segments;
   const std::vector<FoundEffect> ramps = remove_ramps(plant, options, straight);
   Diagnosis out = Diagnoser(plant, straight, options).run(ramps);
+  out.evidence = evidence_of(plant, straight, options.holdout_from, out);
   add_ramps_to_gaps(plant, straight, options.holdout_from, out);
   return out;
 }
