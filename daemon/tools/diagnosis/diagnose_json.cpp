@@ -97,6 +97,7 @@ Json force_json(const DiagnoseOutput& o, const estimator::PlaceForce& f) {
           {"record", o.records[f.record].path},
           {"measured", f.measured},
           {"source", force_source(f)},
+          {"band_hz", span(f.low_hz, f.high_hz)},
           {"peak_deformation_m", json_value(f.peak_d_m)},
           {"peak_force_n",
            {{"measured", if_known(f.measured, f.measured_n)},

@@ -17,9 +17,11 @@ namespace {
 using estimator::PlaceForce;
 
 constexpr double kMillimetres = 1e3;
-constexpr double kKilonewton = 1e3;        // N; smaller forces are in N
-constexpr double kVisibleShare = 0.005;    // of the force
-constexpr int kNarrow = 480, kTall = 300;  // px; two plots fit beside each other
+constexpr double kKilonewton = 1e3;      // N; smaller forces are in N
+constexpr double kNoLouder = 1.1;        // rms of the rest over that of noise
+constexpr double kVisibleShare = 0.005;  // of the force
+constexpr int kNarrow = 480,
+              kTall = 300;  // px; two plots fit beside each other, and a phone shows one
 
 // Colors and marks of every plot here: what is measured, the linear model, the model with the
 // effects, noise.
@@ -60,17 +62,17 @@ std::string force_plot(const DiagnoseOutput& o, const PlaceForce& f) {
   const bool kilo = largest(f) >= kKilonewton;
   const double to_unit = kilo ? 1 / kKilonewton : 1;
   SvgPlot plot(place_words(o, f), {"deformation, mm"},
-               {kilo ? "restoring force, kN" : "restoring force, N"}, 2 * kNarrow, kTall + 60);
+               {kilo ? "restoring force, kN" : "restoring force, N"}, kNarrow, kTall + 60);
   const auto add = [&](const char* name, int color, SvgMark mark,
                        const estimator::ForceCurve& curve) {
     if (curve.d_m.size() > 0)
       plot.add(
           {name, color, mark, scaled(curve.d_m, kMillimetres), scaled(curve.force_n, to_unit)});
   };
-  add("measured", kMeasured, SvgMark::dots, f.measurement);
   if (f.is_element) add("linear model", kLinear, SvgMark::dashed, f.linear);
   const std::string with = with_name(o);
   add(with.c_str(), kWithEffects, SvgMark::line, f.with_effects);
+  add("measured", kMeasured, SvgMark::dots, f.measurement);  // on top of the lines
   plot.describe(force_sentence(o, f));
   return plot.svg();
 }
@@ -100,7 +102,8 @@ std::string force_source(const PlaceForce& f) {
                      "of this force, rms)",
                      percent(f.modelled_share))
                : fmt::format(" ({} of this force, rms)", percent(f.modelled_share));
-  return out + ". Deformations are in the band, from accelerations integrated twice.";
+  return out +
+         fmt::format(". Forces and deformations hold {:.3g} to {:.3g} Hz.", f.low_hz, f.high_hz);
 }
 
 std::string force_sentence(const DiagnoseOutput& o, const PlaceForce& f) {
@@ -208,9 +211,10 @@ std::string residual_sentence(const DiagnoseOutput& o) {
   return fmt::format(
       "{}; chance puts about {:.0f} there. {} Its rms is {:.3g} times that of the noise.", counts,
       0.05 * static_cast<double>(lags),
-      estimator::is_patterned(outside, lags)
-          ? "What is left still follows a pattern, so it is not noise alone."
-          : "What is left has no pattern: it looks like noise.",
+      !estimator::is_patterned(outside, lags) ? "What is left has no pattern: it looks like noise."
+      : level < kNoLouder
+          ? "What is left is no larger than noise, so its pattern may be that of the noise."
+          : "What is left still follows a pattern, so it is not noise alone.",
       level);
 }
 
@@ -218,7 +222,7 @@ std::string residual_section(const DiagnoseOutput& o) {
   const estimator::ResidualCorrelation& c = o.diagnosis.evidence.correlation;
   if (c.lag_s.size() == 0) return "";
   SvgAxis y{"autocorrelation"};
-  SvgPlot plot("autocorrelation of what is left", {"lag, s"}, y, 2 * kNarrow, kTall - 40);
+  SvgPlot plot("autocorrelation of what is left", {"lag, s"}, y, kNarrow, kTall - 40);
   const std::vector<double> lag = scaled(c.lag_s, 1);
   plot.add({"before", kLinear, SvgMark::dashed, lag, scaled(c.before, 1)});
   if (has_effects(o) && c.after.size() > 0)

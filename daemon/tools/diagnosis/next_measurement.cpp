@@ -158,8 +158,8 @@ std::string between(const DiagnoseOutput& o, const NamedEffect& best,
 }
 
 constexpr const char* kOtherStrengths =
-    "More than noise is left: record motion of half and of twice the strength, which shows how the "
-    "rest depends on the amplitude.";
+    "Record motion of half and of twice the strength: it shows how the rest, which is more than "
+    "noise, depends on the amplitude.";
 
 std::string for_effect(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
   if (grade_of(f) == estimator::Grade::established) return "";

@@ -191,6 +191,19 @@ std::optional<LawPort> port_at(const Plant& plant, const Model& model, const Rec
   return ports[best];
 }
 
+/// Returns the segment with all frequencies above its band, if the plant is small and the sensors
+/// read acceleration. Displacement has too much noise there.
+RecordSegment widened(const Plant& plant, const RecordSegment& s) {
+  const bool displaced = std::count(s.displaced.begin(), s.displaced.end(), 1) > 0;
+  if (plant.is_large() || plant.prescribed || displaced) return s;
+  const double step_hz = s.rate_hz / static_cast<double>(s.intervals());
+  const Band band{(static_cast<double>(s.first_bin) - 0.5) * step_hz, s.rate_hz / 2};
+  RecordSegment out = make_segment(s.accel, s.rate_hz, s.variance.cwiseSqrt(), band);
+  out.lead = s.lead;
+  out.corner_hz = s.corner_hz;
+  return out;
+}
+
 /// Samples of the segment that are shown.
 struct Rows {
   Index from = 0, size = 0;
@@ -222,9 +235,12 @@ ForceCurve cut(const History& h, const Rows& rows) {
 }  // namespace
 
 std::optional<PlaceForce> force_at(const Plant& plant, const Model& linear, const Model& model,
-                                   const RecordSegment& segment, std::size_t record,
+                                   const RecordSegment& given, std::size_t record,
                                    const EffectPlace& place) {
+  const RecordSegment segment = widened(plant, given);
   PlaceForce out;
+  out.low_hz = segment.w[0] / (2 * M_PI);
+  out.high_hz = segment.w[segment.bins() - 1] / (2 * M_PI);
   out.place = place;
   out.record = record;
   const std::optional<LawPort> port = port_at(plant, model, segment, out.place);

@@ -13,7 +13,7 @@
 
 namespace framewatch::estimator {
 
-/// A restoring force over the deformation under it, in the band of a segment, one value per sample.
+/// A restoring force over the deformation under it, one value per sample.
 struct ForceCurve {
   Eigen::VectorXd d_m, force_n;
 };
@@ -25,11 +25,14 @@ struct ForceCurve {
 /// At other places it is the inertia of the floors there, less the forces of all other elements.
 /// The simulated forces are of free runs under the measured motion of the base alone.
 struct PlaceForce {
-  EffectPlace place;          ///< an element, or two floors
-  std::size_t record = 0;     ///< index of the segment
-  bool is_element = false;    ///< false: a law alone acts there, without a spring or dashpot
-  bool has_law = false;       ///< of the model with the effects
-  bool measured = false;      ///< false: no sensors read the deformation or the inertia
+  EffectPlace place;        ///< an element, or two floors
+  std::size_t record = 0;   ///< index of the segment
+  bool is_element = false;  ///< false: a law alone acts there, without a spring or dashpot
+  bool has_law = false;     ///< of the model with the effects
+  bool measured = false;    ///< false: no sensors read the deformation or the inertia
+  /// Frequencies of forces and deformations: from the lower end of the band to half the sampling
+  /// rate, because a law makes harmonics. In large buildings and component tests only the band.
+  double low_hz = 0, high_hz = 0;
   bool of_direction = false;  ///< floors are rigid: inertia of all frames of the direction
   /// The strongest motion; `from_s` is its start in the segment. A curve is empty if it is not
   /// known: not measured, or the run diverges.

@@ -50,8 +50,8 @@ TEST(NearRivals, AreThoseThatKeepTheConfidenceLow) {
   const HandMade made;
   const auto found = [&](double margin) {
     return effect_of({made.trial(EffectKind::cubic_stiffness, 500),
-                      made.trial(EffectKind::pinching, 300),
-                      made.trial(EffectKind::bouc_wen, 500 - margin)});
+                      made.trial(EffectKind::bouc_wen, 500 - margin),
+                      made.trial(EffectKind::pinching, 300)});
   };
   constexpr double kSure = 0.95;
   const double limit = 20 * std::log(0.5 / (1 - kSure));
