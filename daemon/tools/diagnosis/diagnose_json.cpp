@@ -96,7 +96,7 @@ Json force_json(const DiagnoseOutput& o, const estimator::PlaceForce& f) {
   return {{"location", location_json(f.place, o.plant.structure, o.plant.axes)},
           {"record", o.records[f.record].path},
           {"measured", f.measured},
-          {"source", force_source(f)},
+          {"source", force_source(o, f)},
           {"band_hz", span(f.low_hz, f.high_hz)},
           {"peak_deformation_m", json_value(f.peak_d_m)},
           {"peak_force_n",

@@ -60,7 +60,7 @@ std::string gap_section(const DiagnoseOutput& o) {
     plot.describe(fmt::format("The widest gap before is {} of channel {}.",
                               gap_percent(before.worst),
                               o.plant.axes[static_cast<std::size_t>(before.worst_axis)].name));
-    plots.push_back(plot.svg());
+    if (names.categories.size() > 1) plots.push_back(plot.svg());
   }
   const std::string fitted = o.diagnosis.after_of_all
                                  ? "The training records do not determine the effects: the gap "
@@ -71,7 +71,10 @@ std::string gap_section(const DiagnoseOutput& o) {
          driver_words(o) + " alone, as a share of " + html_text(denominator_words(o)) + ". " +
          fitted + "</p>\n" + html_table({"record", "before", "after", "noise floor"}, rows) +
          gap_parts_section(o) +
-         html_figure(plots, "Gap per channel, with the floor that the sensors' noise alone gives.");
+         (plots.empty() ? ""
+                        : html_figure(plots,
+                                      "The gap of every channel, with the floor that the "
+                                      "sensors' noise alone gives."));
 }
 
 std::string history_section(const DiagnoseOutput& o) {

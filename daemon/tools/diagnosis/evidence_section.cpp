@@ -19,7 +19,9 @@ using estimator::PlaceForce;
 constexpr double kMillimetres = 1e3;
 constexpr double kKilonewton = 1e3;      // N; smaller forces are in N
 constexpr double kNoLouder = 1.1;        // rms of the rest over that of noise
+constexpr double kOutsideShare = 0.05;   // of the lags, by chance
 constexpr double kVisibleShare = 0.005;  // of the force
+constexpr Eigen::Index kDots = 200;      // of the measured force
 constexpr int kNarrow = 480,
               kTall = 300;  // px; two plots fit beside each other, and a phone shows one
 
@@ -58,6 +60,15 @@ std::string percent(double share) {
   return fmt::format("{:.2g} %", 100 * share);
 }
 
+/// Returns at most kDots of a curve's points.
+estimator::ForceCurve thinned(const estimator::ForceCurve& curve) {
+  const Eigen::Index stride = (curve.d_m.size() + kDots - 1) / kDots;
+  if (stride < 2) return curve;
+  const Eigen::Index count = (curve.d_m.size() + stride - 1) / stride;
+  const auto every = Eigen::seqN(Eigen::Index{0}, count, stride);
+  return {curve.d_m(every), curve.force_n(every)};
+}
+
 std::string force_plot(const DiagnoseOutput& o, const PlaceForce& f) {
   const bool kilo = largest(f) >= kKilonewton;
   const double to_unit = kilo ? 1 / kKilonewton : 1;
@@ -72,29 +83,29 @@ std::string force_plot(const DiagnoseOutput& o, const PlaceForce& f) {
   if (f.is_element) add("linear model", kLinear, SvgMark::dashed, f.linear);
   const std::string with = with_name(o);
   add(with.c_str(), kWithEffects, SvgMark::line, f.with_effects);
-  add("measured", kMeasured, SvgMark::dots, f.measurement);  // on top of the lines
+  add("measured", kMeasured, SvgMark::dots, thinned(f.measurement));  // on top of the lines
   plot.describe(force_sentence(o, f));
   return plot.svg();
 }
 
 }  // namespace
 
-std::string force_source(const PlaceForce& f) {
+std::string force_source(const DiagnoseOutput& o, const PlaceForce& f) {
   if (!f.measured)
     return "No sensors read this deformation, or the motion of all floors that load it: only the "
            "models are shown.";
-  std::string out = "Measured: ";
+  std::string out = "Measured: ", from = ", from their motion and masses";
+  for (Eigen::Index a = 0; a < o.plant.axis_count(); ++a)
+    if (o.plant.is_force(a)) from = ", from their motion and masses, and the force on them";
   if (f.place.kind != estimator::PlaceKind::frame || !f.is_element)
-    out +=
-        "the inertia there, from accelerations and masses, less what the model says of the "
-        "other elements";
+    out += "the inertia of the floors there" + from +
+           ", less what the model says of the other elements";
   else if (f.of_direction)
-    out +=
-        "the inertia of the floors above, from accelerations and masses. Rigid floors share it "
-        "among the frames of this direction, so the other frames' forces by the model are "
-        "subtracted";
+    out += "the inertia of the floors above" + from +
+           ". Rigid floors share it among the frames of this direction, so the other frames' "
+           "forces by the model are subtracted";
   else
-    out += "the inertia of this frame's floors above, from accelerations and masses";
+    out += "the inertia of this frame's floors above" + from;
   if (f.modelled_share > kVisibleShare)
     out += f.place.kind == estimator::PlaceKind::frame && f.is_element && !f.of_direction
                ? fmt::format(
@@ -142,12 +153,12 @@ std::string force_section(const DiagnoseOutput& o) {
   std::string out = "<h2>Force and deformation</h2>\n";
   for (const PlaceForce& f : forces)
     out += html_paragraph(force_sentence(o, f)) +
-           html_figure(
-               {force_plot(o, f)},
-               html_text(fmt::format(
-                   "The strongest motion of {}, {:.1f} to {:.1f} s. {} The models are "
-                   "driven by the {} alone.",
-                   o.records[f.record].path, f.from_s, f.to_s, force_source(f), driver_words(o))));
+           html_figure({force_plot(o, f)},
+                       html_text(fmt::format(
+                           "The strongest motion of {}, {:.1f} to {:.1f} s. {} The models are "
+                           "driven by the {} alone.",
+                           o.records[f.record].path, f.from_s, f.to_s, force_source(o, f),
+                           driver_words(o))));
   return out;
 }
 
@@ -185,12 +196,13 @@ std::string gap_parts_section(const DiagnoseOutput& o) {
     told += fmt::format("Floor {}: {} before{}. ", g.story, gap_percent(g.before),
                         has_effects(o) ? ", " + or_dash(100 * g.after, "{:.2f} % after") : "");
   }
+  if (e.floors.size() < 2) floors.categories.clear();  // the table has it
   SvgPlot by_floor("by floor", floors, {"gap, % of the floor's motion"}, kNarrow, kTall);
   by_floor.add(noise);
   by_floor.add(before);
   if (has_effects(o)) by_floor.add(after);
   by_floor.describe(told);
-  plots.push_back(by_floor.svg());
+  if (!floors.categories.empty()) plots.push_back(by_floor.svg());
   return html_figure(
       plots, "The gap of the " +
                  std::string(o.holdout_from < o.records.size() ? "held-out records" : "records") +
@@ -209,8 +221,8 @@ std::string residual_sentence(const DiagnoseOutput& o) {
                          c.before_outside, lags, c.after_outside)
            : fmt::format("{} of {} lags are outside the band", outside, lags);
   return fmt::format(
-      "{}; chance puts about {:.0f} there. {} Its rms is {:.3g} times that of the noise.", counts,
-      0.05 * static_cast<double>(lags),
+      "{}; chance puts about {:.2g} there. {} Its rms is {:.3g} times that of the noise.", counts,
+      kOutsideShare * static_cast<double>(lags),
       !estimator::is_patterned(outside, lags) ? "What is left has no pattern: it looks like noise."
       : level < kNoLouder
           ? "What is left is no larger than noise, so its pattern may be that of the noise."

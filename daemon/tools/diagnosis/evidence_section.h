@@ -18,7 +18,7 @@ std::string force_section(const DiagnoseOutput& output);
 std::string force_sentence(const DiagnoseOutput& output, const estimator::PlaceForce& force);
 
 /// Says how the measured force was computed, or why it is unknown.
-std::string force_source(const estimator::PlaceForce& force);
+std::string force_source(const DiagnoseOutput& output, const estimator::PlaceForce& force);
 
 /// Returns the gap of the held-out records by frequency and by floor.
 std::string gap_parts_section(const DiagnoseOutput& output);

@@ -204,32 +204,38 @@ RecordSegment widened(const Plant& plant, const RecordSegment& s) {
   return out;
 }
 
-/// Samples of the segment that are shown.
+/// Returns the samples at each end that are left out: two periods of the lowest frequency, at most
+/// a tenth. A motion that has not begun or ended there disturbs its integral.
+Index left_out(const RecordSegment& s) {
+  const double two_periods = 4 * M_PI / s.w[0] * s.rate_hz;
+  return std::min(static_cast<Index>(two_periods), s.intervals() / 10);
+}
+
+/// Returns a signal in time, without the samples that are left out.
+VectorXd inner(const VectorXcd& bins, const RecordSegment& s) {
+  const VectorXd all = signal_of(bins, s, 1);
+  const Index ends = left_out(s);
+  return all.segment(ends, all.size() - 2 * ends);
+}
+
+/// Samples of inner() that are shown.
 struct Rows {
   Index from = 0, size = 0;
 };
 
-Rows strongest(const VectorXd& d, const VectorXcd& bins, const RecordSegment& segment) {
+/// d: deformation, and its spectrum `bins`.
+Rows strongest(const VectorXd& d, const VectorXcd& bins, const RecordSegment& s) {
   const VectorXd power = bins.cwiseAbs2();
-  const double w = std::sqrt(power.dot(segment.w.cwiseAbs2()) / std::max(power.sum(), 1e-300));
+  const double w = std::sqrt(power.dot(s.w.cwiseAbs2()) / std::max(power.sum(), 1e-300));
   const auto size = std::clamp<Index>(
-      static_cast<Index>(kCycles * 2 * M_PI / std::max(w, 1e-9) * segment.rate_hz), 1, d.size());
+      static_cast<Index>(kCycles * 2 * M_PI / std::max(w, 1e-9) * s.rate_hz), 1, d.size());
   Index peak = 0;
   d.cwiseAbs().maxCoeff(&peak);
   return {std::clamp<Index>(peak - size / 2, 0, d.size() - size), size};
 }
 
-/// A force in time, whole, and its largest value.
-struct History {
-  VectorXd d, force;
-};
-
-History history(const VectorXcd& d, const VectorXcd& force, const RecordSegment& segment) {
-  return {signal_of(d, segment, 1), signal_of(force, segment, 1)};
-}
-
-ForceCurve cut(const History& h, const Rows& rows) {
-  return {h.d.segment(rows.from, rows.size), h.force.segment(rows.from, rows.size)};
+double rms(const VectorXd& v) {
+  return std::sqrt(v.squaredNorm() / static_cast<double>(std::max<Index>(v.size(), 1)));
 }
 
 }  // namespace
@@ -262,31 +268,35 @@ std::optional<PlaceForce> force_at(const Plant& plant, const Model& linear, cons
   out.measured = measured.has_value();
   if (!measured && !after && !before) return std::nullopt;
   const VectorXcd& d = measured ? measured->d : after ? after->d : before->d;
-  const VectorXd shown = signal_of(d, segment, 1);
+  const VectorXd shown = inner(d, segment);
   const Rows rows = strongest(shown, d, segment);
-  out.from_s = static_cast<double>(rows.from) / segment.rate_hz;
-  out.to_s = static_cast<double>(rows.from + rows.size) / segment.rate_hz;
+  const Index from = left_out(segment) + rows.from;
+  out.from_s = static_cast<double>(from) / segment.rate_hz;
+  out.to_s = static_cast<double>(from + rows.size) / segment.rate_hz;
   out.peak_d_m = shown.cwiseAbs().maxCoeff();
 
-  const auto take = [&](const VectorXcd& at, const VectorXcd& force, ForceCurve& curve,
-                        double& peak, double* off) {
-    const History h = history(at, force, segment);
-    curve = cut(h, rows);
-    peak = h.force.cwiseAbs().maxCoeff();
-    if (off && measured)
-      *off = (force - measured->force).norm() / std::max(measured->force.norm(), 1e-300);
+  VectorXd truth;  // the measured force
+  const auto take = [&](const VectorXcd& at, const VectorXcd& bins, ForceCurve& curve,
+                        double& peak) {
+    const VectorXd force = inner(bins, segment);
+    curve = {inner(at, segment).segment(rows.from, rows.size), force.segment(rows.from, rows.size)};
+    peak = force.cwiseAbs().maxCoeff();
+    return force;
+  };
+  const auto off = [&](const VectorXd& force) {
+    return measured ? rms(force - truth) / std::max(out.measured_rms_n, 1e-300) : 0;
   };
   if (measured) {
-    take(measured->d, measured->force, out.measurement, out.measured_n, nullptr);
-    out.measured_rms_n = rms_of(measured->force.squaredNorm(), segment);
+    truth = take(measured->d, measured->force, out.measurement, out.measured_n);
+    out.measured_rms_n = rms(truth);
     out.noise_n = measured->noise_n;
     out.modelled_share = measured->modelled_share;
   }
   if (before)
-    take(before->d, simulated(linear, *before), out.linear, out.linear_n, &out.linear_off);
+    out.linear_off = off(take(before->d, simulated(linear, *before), out.linear, out.linear_n));
   if (after && out.has_law)
-    take(after->d, simulated(model, *after), out.with_effects, out.with_effects_n,
-         &out.with_effects_off);
+    out.with_effects_off =
+        off(take(after->d, simulated(model, *after), out.with_effects, out.with_effects_n));
   return out;
 }
 

@@ -38,7 +38,7 @@ struct PlaceForce {
   /// known: not measured, or the run diverges.
   double from_s = 0, to_s = 0;
   ForceCurve measurement, linear, with_effects;
-  // Over the whole segment:
+  // Over the whole segment, without two periods of low_hz at its ends, where integrals err:
   double peak_d_m = 0;  ///< largest deformation: measured, else with the effects
   double measured_n = 0, linear_n = 0, with_effects_n = 0;  ///< largest forces
   /// The rms difference between measured and simulated force over the rms of the measured force.
