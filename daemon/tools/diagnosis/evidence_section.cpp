@@ -225,7 +225,7 @@ std::string residual_sentence(const DiagnoseOutput& o) {
       kOutsideShare * static_cast<double>(lags),
       !estimator::is_patterned(outside, lags) ? "What is left has no pattern: it looks like noise."
       : level < kNoLouder
-          ? "What is left is no larger than noise, so its pattern may be that of the noise."
+          ? "The rest does not exceed noise, so its pattern may be that of the noise."
           : "What is left still follows a pattern, so it is not noise alone.",
       level);
 }
