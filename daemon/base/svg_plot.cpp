@@ -363,7 +363,9 @@ std::string SvgPlot::svg() const {
   const std::string head = fmt::format(
       "<svg class=\"plot\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}\">",
-      width_, height_, html_text(title_.empty() ? y_.label : title_));
+      width_, height_,
+      html_text((title_.empty() ? y_.label : title_) +
+                (description_.empty() ? "" : ". " + description_)));
   return drawn(head, width_, true) + "\n";
 }
 

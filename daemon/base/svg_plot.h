@@ -78,6 +78,8 @@ class SvgPlot {
 
   void add(SvgSeries series) { series_.push_back(std::move(series)); }
   void add(SvgBox box) { boxes_.push_back(std::move(box)); }
+  /// Sets what svg() tells readers who cannot see it, after the title.
+  void describe(std::string text) { description_ = std::move(text); }
   /// Leaves out the axes and draws x and y in one scale, as in a drawing of a building.
   void leave_out_axes() { axes_ = false; }
   /// Adds a thin horizontal line across the plot.
@@ -103,7 +105,7 @@ class SvgPlot {
   std::vector<double> ys_within(const SvgAxis& x) const;
   std::string drawn(const std::string& head, int width, bool titled) const;
 
-  std::string title_;
+  std::string title_, description_;
   SvgAxis x_, y_;
   int width_, height_;
   bool axes_ = true;

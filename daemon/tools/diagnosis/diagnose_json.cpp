@@ -6,9 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/json.h"
+#include "daemon/tools/diagnosis/evidence_section.h"
+#include "daemon/tools/diagnosis/next_measurement.h"
 #include "daemon/tools/simulation/simulation_truth.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/trials/damping_form.h"
+#include "estimator/diagnose/verdict/evidence.h"
 #include "estimator/diagnose/verdict/verdict.h"
 #include "estimator/structure/group_design.h"
 
@@ -79,11 +82,76 @@ Json kind_json(const estimator::WhereEntry& where) {
 /// Words for estimator::TrialOutcome, in its order.
 constexpr std::array kOutcomeWords = {"fitted", "screened_out", "diverged", "other_law"};
 
+Json numbers(const Eigen::VectorXd& values) {
+  Json out = Json::array();
+  for (const double value : values) out.push_back(json_value(value));
+  return out;
+}
+
+Json force_json(const DiagnoseOutput& o, const estimator::PlaceForce& f) {
+  const auto if_known = [](bool known, double value) {
+    return known ? json_value(value) : Json(nullptr);
+  };
+  const bool linear = f.linear.d_m.size() > 0, with = f.with_effects.d_m.size() > 0;
+  return {{"location", location_json(f.place, o.plant.structure, o.plant.axes)},
+          {"record", o.records[f.record].path},
+          {"measured", f.measured},
+          {"source", force_source(o, f)},
+          {"band_hz", span(f.low_hz, f.high_hz)},
+          {"peak_deformation_m", json_value(f.peak_d_m)},
+          {"peak_force_n",
+           {{"measured", if_known(f.measured, f.measured_n)},
+            {"linear", if_known(linear, f.linear_n)},
+            {"with_effects", if_known(with, f.with_effects_n)}}},
+          {"difference_share",
+           {{"linear", if_known(f.measured && linear, f.linear_off)},
+            {"with_effects", if_known(f.measured && with, f.with_effects_off)}}},
+          {"measured_rms_n", if_known(f.measured, f.measured_rms_n)},
+          {"noise_rms_n", if_known(f.measured, f.noise_n)},
+          {"share_by_model", if_known(f.measured, f.modelled_share)}};
+}
+
+/// Returns the evidence; `after` is null if the model with the effects diverges.
+Json evidence_json(const DiagnoseOutput& o) {
+  const estimator::Evidence& e = o.diagnosis.evidence;
+  Json forces = Json::array(), floors = Json::array();
+  for (const estimator::PlaceForce& f : e.forces) forces.push_back(force_json(o, f));
+  for (const estimator::FloorGap& g : e.floors)
+    floors.push_back({{"story", g.story},
+                      {"before", json_value(g.before)},
+                      {"after", json_value(g.after)},
+                      {"noise_floor", json_value(g.floor)}});
+  const auto or_null = [](const Eigen::VectorXd& values) {
+    return values.size() > 0 ? numbers(values) : Json(nullptr);
+  };
+  const estimator::ResidualCorrelation& c = e.correlation;
+  const bool after = c.after.size() > 0;
+  return {{"forces", forces},
+          {"gap_by_floor", floors},
+          {"gap_by_frequency",
+           {{"unit", std::string(gap_unit(o)) + "/sqrt(Hz)"},
+            {"frequency_hz", numbers(e.spectrum.hz)},
+            {"measured", numbers(e.spectrum.measured)},
+            {"before", numbers(e.spectrum.before)},
+            {"after", or_null(e.spectrum.after)},
+            {"noise_floor", numbers(e.spectrum.noise)}}},
+          {"residual_autocorrelation",
+           {{"lag_s", numbers(c.lag_s)},
+            {"before", numbers(c.before)},
+            {"after", or_null(c.after)},
+            {"white_noise_band", json_value(c.white_band)},
+            {"lags_outside_before", c.before_outside},
+            {"lags_outside_after", after ? Json(c.after_outside) : Json(nullptr)},
+            {"rms_over_noise_before", json_value(c.before_level)},
+            {"rms_over_noise_after", after ? json_value(c.after_level) : Json(nullptr)}}}};
+}
+
 Json trial_json(const DiagnoseOutput& o, const estimator::Trial& t) {
   Json out{{"effect", std::string(name_of(t.kind))},
            {"location", location_json(t.place, o.plant.structure, o.plant.axes)},
            {"explained_share", json_value(t.fraction)},
            {"misfit", json_value(t.cost)},
+           {"misfit_ratio", json_value(misfit_ratio(o.plant, o.segments, t))},
            {"fate", kOutcomeWords[static_cast<std::size_t>(t.outcome)]}};
   if (t.second)
     out["together_with"] = {
@@ -155,6 +223,7 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
                     {"share_of_gap", json_value(share_of_gap(o, f.before - f.after))},
                     {"grade", grade_word(grade_of(f))},
                     {"confidence", json_value(f.confidence)},
+                    {"certainty", confidence_words(o, f)},
                     {"approximate", f.approximate},
                     {"alternatives", Json::array()},
                     {"indistinguishable_from", Json::array()}});
@@ -189,6 +258,8 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
          {"peak", w.peak > 0 ? json_value(w.peak) : Json(nullptr)},
          {"peak_unit", w.place.kind == estimator::PlaceKind::channel ? "m/s^2" : "N"},
          {"kind", kind_json(w)}});
+  out["measure_next"] = next_measurement(o);
+  out["evidence"] = evidence_json(o);
   out["parameters"] = parameters_of(o);
   Json files = Json::array();
   for (std::size_t r = 0; r < o.records.size(); ++r)

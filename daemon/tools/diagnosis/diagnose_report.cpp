@@ -10,17 +10,17 @@
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
 #include "daemon/base/words.h"
+#include "daemon/tools/diagnosis/evidence_section.h"
+#include "daemon/tools/diagnosis/next_measurement.h"
 #include "daemon/tools/diagnosis/where_map.h"
-#include "estimator/diagnose/model/free_run.h"
-#include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
+#include "estimator/diagnose/verdict/evidence.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr int kForceDeformationPoints = 4000;
-constexpr std::size_t kRanked = 15;
+constexpr std::size_t kRanked = 6;
 
 std::string place(const DiagnoseOutput& o, const estimator::EffectPlace& p) {
   return html_text(place_text(p, o.plant.structure, o.plant.axes));
@@ -52,11 +52,15 @@ std::string gap_section(const DiagnoseOutput& o) {
       a.y.push_back(100 * after.axis[at]);
       n.y.push_back(100 * before.floor[at]);
     }
-    SvgPlot plot(use(o, r) + ": gap of every channel", names, {"free-run NRMSE, %"});
+    if (r + 1 < o.diagnosis.before.size() && r < o.holdout_from) continue;
+    SvgPlot plot("by channel: " + o.records[r].path, names, {"gap, % of the channel's motion"});
     plot.add(n);
     plot.add(b);
-    plot.add(a);
-    plots.push_back(plot.svg());
+    if (!o.diagnosis.effects.empty()) plot.add(a);
+    plot.describe(fmt::format("The widest gap before is {} of channel {}.",
+                              gap_percent(before.worst),
+                              o.plant.axes[static_cast<std::size_t>(before.worst_axis)].name));
+    if (names.categories.size() > 1) plots.push_back(plot.svg());
   }
   const std::string fitted = o.diagnosis.after_of_all
                                  ? "The training records do not determine the effects: the gap "
@@ -66,7 +70,11 @@ std::string gap_section(const DiagnoseOutput& o) {
          "<p>Free run from the measured " +
          driver_words(o) + " alone, as a share of " + html_text(denominator_words(o)) + ". " +
          fitted + "</p>\n" + html_table({"record", "before", "after", "noise floor"}, rows) +
-         html_figure(plots, "Gap per channel, with the floor that the sensors' noise alone gives.");
+         gap_parts_section(o) +
+         (plots.empty() ? ""
+                        : html_figure(plots,
+                                      "The gap of every channel, with the floor that the "
+                                      "sensors' noise alone gives."));
 }
 
 std::string history_section(const DiagnoseOutput& o) {
@@ -102,77 +110,6 @@ std::string history_section(const DiagnoseOutput& o) {
   }
   return "<h2>Measured and simulated</h2>\n" +
          html_figure(plots, "The channel with the widest gap, around the strongest motion.");
-}
-
-/// Motion of a found law in the last record: the element's deformation and its restoring force.
-struct LawMotion {
-  std::string place;
-  int story = 0;                     ///< of a frame; 0: not a frame
-  double linear = 0, stiffness = 0;  ///< before and after, SI
-  Eigen::VectorXd deformation_m, force_n;
-};
-
-std::vector<LawMotion> law_motions(const DiagnoseOutput& o) {
-  std::vector<LawMotion> out;
-  for (const estimator::FoundEffect& f : o.diagnosis.effects) {
-    if (f.index < 0) continue;
-    const estimator::ModelEffect& e = o.diagnosis.model.effects[static_cast<std::size_t>(f.index)];
-    if (!e.element_law()) continue;
-    const std::vector<estimator::ActiveLaw> laws = active_laws(o.plant, o.diagnosis.model);
-    std::size_t law = 0;
-    while (laws[law].effect != static_cast<std::size_t>(f.index)) ++law;
-    const int element = laws[law].port.element;
-    if (element < 0) continue;
-    const std::size_t r = o.segments.size() - 1;
-    const int ratio = steps_per_sample(o.plant, o.segments[r].rate_hz);
-    const estimator::FreeRun run = free_run(o.plant, o.diagnosis.model, o.segments[r], r, ratio);
-    if (!run.good || run.tracks[law].d.size() == 0) continue;
-    const estimator::LawTrack& track = run.tracks[law];
-    const double k = o.diagnosis.model.theta[element];
-    out.push_back({place_text(e.place, o.plant.structure, o.plant.axes),
-                   e.place.kind == estimator::PlaceKind::frame ? e.place.story : 0,
-                   o.diagnosis.linear.theta[element], k, track.d, k * track.d + track.force});
-  }
-  return out;
-}
-
-/// Explains a law for the people who look after the building: its force at the largest deformation
-/// against the linear model's.
-std::string meaning(const DiagnoseOutput& o, const LawMotion& m) {
-  Eigen::Index at = 0;
-  const double drift = m.deformation_m.cwiseAbs().maxCoeff(&at);
-  const double force = std::abs(m.force_n[at]), linear = m.linear * drift;
-  if (!(drift > 0) || !(linear > 0)) return "";
-  std::string out =
-      fmt::format("At its largest deformation in the last record, {:.3g} mm", 1e3 * drift);
-  if (m.story > 0) {
-    const double height = o.plant.structure.story_height[static_cast<std::size_t>(m.story - 1)];
-    out += fmt::format(" ({:.2f} % of the story's height)", 100 * drift / height);
-  }
-  return out + fmt::format(", {} carries {:.3g} kN, {:.0f} % {} than the linear model says.",
-                           m.place, 1e-3 * force, 100 * std::abs(force / linear - 1),
-                           force < linear ? "less" : "more");
-}
-
-std::string loop_section(const std::vector<LawMotion>& motions) {
-  std::vector<std::string> plots;
-  for (const LawMotion& m : motions) {
-    std::vector<double> d, before, after;
-    const Eigen::Index stride =
-        std::max<Eigen::Index>(1, m.deformation_m.size() / kForceDeformationPoints);
-    for (Eigen::Index i = 0; i < m.deformation_m.size(); i += stride) {
-      d.push_back(m.deformation_m[i]);
-      before.push_back(m.linear * m.deformation_m[i]);
-      after.push_back(m.force_n[i]);
-    }
-    SvgPlot plot(m.place, {"deformation, m"}, {"restoring force, N"});
-    plot.add({"with the effect", 0, SvgMark::thin_line, d, after});
-    plot.add({"linear model", 1, SvgMark::dots, d, before});
-    plots.push_back(plot.svg());
-  }
-  return plots.empty() ? ""
-                       : "<h2>Force and deformation</h2>\n" +
-                             html_figure(plots, "The last record, computed with the model.");
 }
 
 /// Returns the time span with nine tenths of the signal that a place needs.
@@ -221,26 +158,35 @@ constexpr std::array kWhyItLost = {
     "its fitted parameters do not give the law of this name",
 };
 
-/// Returns a table of the best trials. best: cost of the chosen one.
+/// Returns a table of the best trials. chosen: the one that they lost against; null without one.
 std::string ranking(const DiagnoseOutput& o, const std::vector<estimator::Trial>& trials,
-                    double best) {
+                    const estimator::Trial* chosen) {
   std::vector<std::vector<std::string>> rows;
-  for (const estimator::Trial& t : trials) {
-    if (rows.size() == kRanked) break;
+  const double best = chosen ? chosen->cost : trials.front().cost;
+  const auto add = [&](const estimator::Trial& t, const std::string& fate) {
     std::string name(name_of(t.kind)), where = place(o, t.place);
     if (t.second) {
       name += " and " + std::string(name_of(t.second->first));
       where += " and " + place(o, t.second->second);
     }
-    rows.push_back({html_text(name), where, gap_percent(t.fraction),
-                    fmt::format("{:.0f}", t.cost - best),
-                    kWhyItLost[static_cast<std::size_t>(t.outcome)]});
+    rows.push_back(
+        {html_text(name), where, or_dash(misfit_ratio(o.plant, o.segments, t), "{:.3g}"),
+         t.outcome == estimator::TrialOutcome::fitted ? fmt::format("{:.0f}", t.cost - best) : "-",
+         fate});
+  };
+  if (chosen) add(*chosen, "named");
+  std::size_t shown = 0;
+  for (const estimator::Trial& t : trials) {
+    if (shown == kRanked) break;
+    add(t, kWhyItLost[static_cast<std::size_t>(t.outcome)]);
+    ++shown;
   }
-  const std::size_t more = trials.size() - rows.size();
-  return html_table({"candidate", "place", "explains of the excess",
-                     "log-likelihood below the best", "why it lost"},
+  return html_table({"candidate", "place", "leaves, times noise",
+                     "log-likelihood below the named one", "why it lost"},
                     rows) +
-         (more > 0 ? fmt::format("<p>{} more are in diagnosis.json.</p>\n", more) : "");
+         (trials.size() > shown
+              ? fmt::format("<p>{} more are in diagnosis.json.</p>\n", trials.size() - shown)
+              : "");
 }
 
 std::string effects_section(const DiagnoseOutput& o) {
@@ -258,22 +204,16 @@ std::string effects_section(const DiagnoseOutput& o) {
                                                         : "",
            html_text(std::string(d.parameters[i].unit))});
     if (!rows.empty()) out += html_table({"parameter", "value", "standard error", "unit"}, rows);
-    out += "<p>" + with_capital(confidence_words(f)) + ".</p>\n";
-    if (f.approximate)
-      out +=
-          "<p>More than noise is left: the effect is not exactly this one, the nearest in the "
-          "catalogue, or another effect acts too.</p>\n";
-    for (const estimator::EffectKind kind : f.like)
-      out += "<p>These records do not distinguish it from " +
-             html_text(std::string(name_of(kind))) + ": record motion of another strength.</p>\n";
-    if (!f.alternatives.empty())
-      out += "<h3>Runners-up</h3>\n" + ranking(o, f.alternatives, f.chosen.cost);
+    out += html_paragraph(with_capital(confidence_words(o, f)) + ".");
+    if (f.alternatives.empty()) continue;
+    const bool alone = !std::isnan(f.chosen.fraction);  // not found together with others
+    out += "<h3>Rivals</h3>\n" + ranking(o, f.alternatives, alone ? &f.chosen : nullptr);
   }
   if (!o.diagnosis.rejected.empty())
     out +=
         "<h2>Rejected effects</h2>\n<p>No effect that fits its name explains 97 % of what an "
         "arbitrary force at the best place explains without worsening a record.</p>\n" +
-        ranking(o, o.diagnosis.rejected, o.diagnosis.rejected.front().cost);
+        ranking(o, o.diagnosis.rejected, nullptr);
   return out;
 }
 
@@ -290,7 +230,6 @@ std::string provenance(const DiagnoseOutput& o) {
 
 std::string diagnosis_report(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
-  const std::vector<LawMotion> motions = law_motions(o);
   std::string body = "<p class=\"verdict\">" + html_text(verdict_sentence(o)) + "</p>\n" +
                      html_paragraph(gap_sentence(o));
   body += html_paragraph(limit_sentence(o)) + html_paragraph(damping_sentence(o)) +
@@ -298,25 +237,21 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
   std::string items;
   for (const estimator::FoundEffect& f : d.effects)
     items += "<li>" +
-             html_text(with_capital(effect_words(o, f)) + ": " + grade_word(grade_of(f)) + ", " +
-                       confidence_words(f)) +
-             fmt::format("; it closes {:.0f} % of the gap.</li>\n",
-                         100 * share_of_gap(o, f.before - f.after));
+             html_text(with_capital(effect_words(o, f)) + ": " + confidence_words(o, f) +
+                       step_words(o, f)) +
+             ".</li>\n";
   std::vector<std::string> more{leading_sentence(o)};
   if (d.effects.empty()) more.push_back(kind_sentence(o));
-  for (const LawMotion& m : motions) more.push_back(meaning(o, m));
   for (const std::string& text : more)
     if (!text.empty()) items += "<li>" + html_text(text) + "</li>\n";
   if (!items.empty()) body += "<ul>\n" + items + "</ul>\n";
   body += html_paragraph(d.reason);
+  if (const std::string next = next_measurement(o); !next.empty())
+    body += "<p><strong>Measure next.</strong> " + html_text(next) + "</p>\n";
   const std::string title = "Diagnosis of " + o.plant.structure.name;
   body += "<h1>" + html_text(title) + "</h1>\n";
-  body += loop_section(motions) + where_section(o) + kind_section(o) + gap_section(o) +
-          history_section(o) + effects_section(o);
-  body += fmt::format(
-      "<h2>Unexplained rest</h2>\n<p>With all effects the simulation differs from the measurement "
-      "by {:.3g} times what the sensors' noise explains; 1 means noise alone.</p>\n",
-      d.ratio_after);
+  body += force_section(o) + gap_section(o) + residual_section(o) + effects_section(o) +
+          where_section(o) + kind_section(o) + history_section(o);
   return html_page(title, body + provenance(o));
 }
 

@@ -13,6 +13,7 @@
 
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
+#include "daemon/base/words.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
@@ -133,6 +134,20 @@ constexpr std::array kPlainNames = {
 };
 static_assert(kPlainNames.size() == static_cast<std::size_t>(estimator::EffectKind::swapped) + 1);
 
+/// Returns the name with spaces: "cubic stiffness".
+std::string spaced(estimator::EffectKind kind) {
+  std::string name(name_of(kind));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+/// Returns true if an effect differs from the law of its name.
+bool is_approximate(const DiagnoseOutput& o) {
+  const std::vector<estimator::FoundEffect>& found = o.diagnosis.effects;
+  return std::any_of(found.begin(), found.end(),
+                     [](const estimator::FoundEffect& f) { return f.approximate; });
+}
+
 }  // namespace
 
 std::vector<NoiseBeyond> noise_beyond_configured(
@@ -205,21 +220,34 @@ std::string gap_percent(double share) {
 }
 
 std::string effect_words(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
-  std::string name(name_of(f.chosen.kind));
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return fmt::format("{}{} at {} ({})", f.approximate ? "something like " : "", name,
+  return fmt::format("{}{} at {} ({})", f.approximate ? "something like " : "",
+                     spaced(f.chosen.kind),
                      place_text(f.chosen.place, o.plant.structure, o.plant.axes),
                      kPlainNames[static_cast<std::size_t>(f.chosen.kind)]);
 }
 
-std::string confidence_words(const estimator::FoundEffect& f) {
-  const char* how = f.confidence >= 0.95  ? "sure"
-                    : f.confidence >= 0.8 ? "likely"
-                                          : "possible, others are nearly as good";
-  const std::string sure = fmt::format("{} (confidence {:.0f} %)", how, 100 * f.confidence);
-  if (std::isnan(f.chosen.fraction)) return sure;
-  return fmt::format("{}, it explains {:.0f} % of what the sensors' noise does not", sure,
-                     100 * f.chosen.fraction);
+std::string confidence_words(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
+  std::string out = fmt::format("{} (confidence {:.3g})", grade_word(grade_of(f)), f.confidence);
+  if (grade_of(f) == estimator::Grade::established) return out;
+  std::vector<std::string> like;
+  for (const estimator::EffectKind kind : f.like) like.push_back(spaced(kind));
+  if (!like.empty())
+    return out + ": " + listed(like) + (like.size() > 1 ? " fit" : " fits") + " as well";
+  if (f.nearest) return out + ": it is the nearest law, and leaves more than it should";
+  if (f.approximate) return out + ": more than noise is left, so its form may be another";
+  const std::vector<const estimator::Trial*> rivals = near_rivals(f, estimator::kEstablished);
+  if (rivals.empty()) return out + ": it was found only together with others";
+  return out + fmt::format(": {} at {} is {:.0f} in log-likelihood behind",
+                           spaced(rivals.front()->kind),
+                           place_text(rivals.front()->place, o.plant.structure, o.plant.axes),
+                           rivals.front()->cost - f.chosen.cost);
+}
+
+std::string step_words(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
+  return o.diagnosis.effects.size() < 2
+             ? std::string()
+             : fmt::format("; with it the held-out gap falls from {} to {}", gap_percent(f.before),
+                           gap_percent(f.after));
 }
 
 double share_of_gap(const DiagnoseOutput& o, double fall) {
@@ -249,7 +277,10 @@ std::string verdict_sentence(const DiagnoseOutput& o) {
                                "the sensors' noise allows."
                              : "The model explains the measurement with " + missing + ".";
     case estimator::Verdict::explained:
-      return "The model lacks " + missing + "; with it the measurement is explained.";
+      return "The model lacks " + missing +
+             (is_approximate(o) ? "; with it nearly all of the gap is gone, but more than noise is "
+                                  "left."
+                                : "; with it the measurement is explained.");
     case estimator::Verdict::partly_explained:
       return "The model lacks " + (missing.empty() ? std::string("something") : missing) +
              "; something else is missing too.";
@@ -323,27 +354,9 @@ std::string limit_sentence(const DiagnoseOutput& o) {
   const std::vector<std::string>& not_done = o.diagnosis.not_done;
   if (not_done.empty()) return "";
   return fmt::format(
-      "The limit of time ended the diagnosis. Not done, or only in part: {}. Give it more time "
-      "with "
-      "--limit.",
+      "The limit of time ended the diagnosis. Not done, or only in part: {}. Give it more "
+      "time with --limit.",
       fmt::join(not_done, "; "));
-}
-
-std::string diagnosis_text(const DiagnoseOutput& o) {
-  const estimator::Diagnosis& d = o.diagnosis;
-  std::vector<std::string> lines{gap_sentence(o), limit_sentence(o), damping_sentence(o),
-                                 noise_sentence(o)};
-  for (const estimator::FoundEffect& f : d.effects)
-    lines.push_back(fmt::format("{}, {}: {}; it closes {:.0f} % of the gap",
-                                grade_word(grade_of(f)), effect_words(o, f), confidence_words(f),
-                                100 * share_of_gap(o, f.before - f.after)));
-  lines.push_back(leading_sentence(o));
-  if (d.effects.empty()) lines.push_back(kind_sentence(o));
-  lines.push_back(d.reason);
-  std::string out = verdict_sentence(o) + "\n";
-  for (const std::string& line : lines)
-    if (!line.empty()) out += "  " + line + "\n";
-  return out;
 }
 
 }  // namespace framewatch::daemon

@@ -57,8 +57,12 @@ std::string damping_sentence(const DiagnoseOutput& output);
 /// Describes the best law that is not established; "" without one.
 std::string leading_sentence(const DiagnoseOutput& output);
 
-/// Returns how certain the name of an effect is.
-std::string confidence_words(const estimator::FoundEffect& effect);
+/// Returns how certain the name of an effect is: grade, confidence, and what the confidence lacks.
+std::string confidence_words(const DiagnoseOutput& output, const estimator::FoundEffect& effect);
+
+/// Returns the change of the held-out gap by one of several effects; "" if there is only one, whose
+/// change gap_sentence() gives.
+std::string step_words(const DiagnoseOutput& output, const estimator::FoundEffect& effect);
 
 /// Returns one sentence: the kind of force that the likeliest element needs, whatever its law. ""
 /// if no element was examined or a linear one is enough.

@@ -70,6 +70,7 @@ Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segme
   const Index n = plant.equations(), axes = plant.axis_count(), bins = system.bins();
   Gap out;
   out.difference = MatrixXcd::Zero(axes, bins);
+  out.noise = MatrixXd::Zero(axes, bins);
   out.axis = out.floor = VectorXd::Zero(axes);
   double error = 0, noise = 0, power = 0;
   Index axis = 0;
@@ -80,7 +81,8 @@ Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segme
     out.difference(axis, b) = plant.push.col(axis).cast<Complex>().dot(e);
     const VectorXcd row = system.operation[at].adjoint() * plant.push.col(axis).cast<Complex>();
     error += std::norm(out.difference(axis, b));
-    noise += row.cwiseAbs2().dot(bin_noise(model, segment, b));
+    out.noise(axis, b) = row.cwiseAbs2().dot(bin_noise(model, segment, b));
+    noise += out.noise(axis, b);
     power += std::norm(system.calibrated(axis, b));
   }
   out.axis[axis] = out.overall = out.worst = std::sqrt(error / std::max(power, 1e-300));
@@ -139,6 +141,7 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
   if (plant.prescribed) return force_gap(plant, model, segment, system);
   Gap out;
   out.difference = MatrixXcd::Zero(axes, bins);
+  out.noise = MatrixXd::Zero(axes, bins);
   VectorXd noise = VectorXd::Zero(axes), power = VectorXd::Zero(axes), error = noise;
   MatrixXcd pushed(n, 0);
   for (const ModelEffect& effect : model.effects)
@@ -168,7 +171,8 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
     for (Index a = 0; a < axes; ++a)
       if (segment.is_displaced(a)) square[a] *= std::pow(segment.w[b], -4);
     out.difference.col(b).array() *= square.array().sqrt();
-    noise += square.cwiseProduct(carried.cwiseAbs2() * variance(bases) + variance);
+    out.noise.col(b) = square.cwiseProduct(carried.cwiseAbs2() * variance(bases) + variance);
+    noise += out.noise.col(b);
     power += square.cwiseProduct(system.calibrated.col(b).head(axes).cwiseAbs2());
   }
   for (const ModelEffect& effect : model.effects)

@@ -36,6 +36,7 @@ struct Gap {
   double worst = 0;
   int worst_axis = -1;
   Eigen::MatrixXcd difference;  ///< axes x bins: measured minus simulated
+  Eigen::MatrixXd noise;  ///< axes x bins: expected |difference|^2 from the sensors' noise alone
 };
 
 /// Returns the gap of one segment, or nullopt if the run diverges. This is the only definition of

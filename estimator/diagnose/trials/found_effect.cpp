@@ -16,6 +16,27 @@ constexpr double kSurest = 0.999;  ///< confidence
 
 }  // namespace
 
+namespace {
+
+/// margin: cost of the best rival minus that of the effect.
+double confidence_of(double margin) {
+  return std::min(kSurest, 1 - kDoubtful * std::exp(-margin / kMargin));
+}
+
+}  // namespace
+
+std::vector<const Trial*> near_rivals(const FoundEffect& effect, double confidence) {
+  std::vector<const Trial*> out;
+  if (std::isnan(effect.chosen.fraction)) return out;
+  for (const Trial& t : effect.alternatives)
+    if (is_rival(t, effect.chosen) &&
+        confidence_of(std::max(0.0, t.cost - effect.chosen.cost)) < confidence)
+      out.push_back(&t);
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Trial* a, const Trial* b) { return a->cost < b->cost; });
+  return out;
+}
+
 FoundEffect effect_of(const std::vector<Trial>& trials) {
   const Trial& best = trials.front();
   FoundEffect out;
@@ -29,8 +50,7 @@ FoundEffect effect_of(const std::vector<Trial>& trials) {
   const auto rival =
       std::find_if(trials.begin(), trials.end(), [&](const Trial& t) { return is_rival(t, best); });
   const double margin = rival == trials.end() ? kLargest : std::max(0.0, rival->cost - best.cost);
-  out.confidence =
-      out.like.empty() ? std::min(kSurest, 1 - kDoubtful * std::exp(-margin / kMargin)) : kDoubtful;
+  out.confidence = out.like.empty() ? confidence_of(margin) : kDoubtful;
   return out;
 }
 

@@ -27,6 +27,7 @@
 #include "estimator/diagnose/trials/trials.h"
 #include "estimator/diagnose/trials/wrong_labels.h"
 #include "estimator/diagnose/verdict/effect_search.h"
+#include "estimator/diagnose/verdict/evidence.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
@@ -332,6 +333,7 @@ Diagnosis diagnose(const Plant& plant, const std::vector<RecordSegment>& segment
   std::vector<RecordSegment> straight = segments;
   const std::vector<FoundEffect> ramps = remove_ramps(plant, options, straight);
   Diagnosis out = Diagnoser(plant, straight, options).run(ramps);
+  out.evidence = evidence_of(plant, straight, options.holdout_from, out);
   add_ramps_to_gaps(plant, straight, options.holdout_from, out);
   return out;
 }

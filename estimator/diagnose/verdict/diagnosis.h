@@ -14,6 +14,8 @@
 #include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/propose/law_kind.h"
 #include "estimator/diagnose/trials/found_effect.h"
+#include "estimator/diagnose/verdict/place_force.h"
+#include "estimator/diagnose/verdict/residual.h"
 #include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
@@ -39,6 +41,17 @@ struct LeadingLaw {
   double before = 0, after = 0;  ///< held-out gap without and with it
 };
 
+/// Pictures and numbers that let a reader check a diagnosis. They describe the held-out records, or
+/// all records if none is held out.
+struct Evidence {
+  /// Forces at the named element laws; at the likeliest element if no law is named and something
+  /// is left. They are of the last record.
+  std::vector<PlaceForce> forces;
+  ResidualSpectrum spectrum;
+  std::vector<FloorGap> floors;
+  ResidualCorrelation correlation;
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::unexplained;
   std::string reason;
@@ -49,6 +62,7 @@ struct Diagnosis {
   std::optional<Model> trained;
   std::vector<Gap> before,
       after;  ///< of each segment, for models fitted to the training segments alone
+  Model before_model, after_model;  ///< those of `before` and `after`
   /// The training segments alone do not determine the effects, so `after` is that of `model`.
   bool after_of_all = false;
   /// The parts that were not done, or only in part, because the time was over (is_over). If parts
@@ -62,6 +76,7 @@ struct Diagnosis {
   std::vector<LeadingLaw> leading;           ///< if no effect was named, best first
   double ratio_before = 0, ratio_after = 0;  ///< misfit over its expectation
   double noise_corner_hz = 0;                ///< RecordSegment::corner_hz; 0: the noise is white
+  Evidence evidence;
 };
 
 /// Reports progress. what: the current work; done: share of the whole that is done, 0 to 1; then:

@@ -126,6 +126,7 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
   if (out.trained) found.push_back(*out.trained);
   // Without any effect, with the first of them, with the first two, ...
   std::vector<std::vector<Gap>> gaps(count + 1);
+  std::vector<Model> models(count + 1);
   run_all(options.parallel, static_cast<int>(gaps.size()), [&](int i) {
     const auto with = static_cast<std::size_t>(i);
     const bool ramp = with > 0 && !out.effects[with - 1].ramp_mps3.empty();
@@ -134,14 +135,18 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
                                       : with == count
                                           ? found
                                           : starts_with(found, out, with, fitter.plant());
-    gaps[with] = gaps_of(fitter, judged_fit(train, starts, kTrainSteps, fitter.within()).model);
+    models[with] = judged_fit(train, starts, kTrainSteps, fitter.within()).model;
+    gaps[with] = gaps_of(fitter, models[with]);
   });
   out.before = gaps.front();
   out.after = gaps.back();
+  out.before_model = models.front();
+  out.after_model = models.back();
   if (count == 0) return;
   const std::vector<Gap> all = gaps_of(fitter, out.model);
   if (held_out(out.after) > kUndetermined * held_out(all)) {
     out.after = all;
+    out.after_model = out.model;
     out.after_of_all = true;
   }
   double gap = mean_gap(out.before, holdout_from);
@@ -157,8 +162,10 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
 }
 
 void set_gaps_of_all(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
-  out.before = gaps_of(fitter, out.linear);
-  out.after = out.effects.empty() ? out.before : gaps_of(fitter, out.model);
+  out.before_model = out.linear;
+  out.after_model = out.effects.empty() ? out.linear : out.model;
+  out.before = gaps_of(fitter, out.before_model);
+  out.after = out.effects.empty() ? out.before : gaps_of(fitter, out.after_model);
   out.after_of_all = true;
   // The gaps of models with some of the effects are not known: the last one closes all of it.
   for (FoundEffect& effect : out.effects)
@@ -239,6 +246,7 @@ bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
             : "the nearest law leaves too large a gap, and is not known to be of the kind of "
               "force at its place";
   out.after = out.before;
+  out.after_model = out.before_model;
   out.after_of_all = false;
   out.ratio_after = out.ratio_before;
   return true;
@@ -253,8 +261,7 @@ void mark_approximate(const Fitter& fitter, Diagnosis& out) {
 }
 
 Grade grade_of(const FoundEffect& effect) {
-  constexpr double kSure = 0.95;
-  return effect.confidence >= kSure && !effect.approximate && effect.like.empty()
+  return effect.confidence >= kEstablished && !effect.approximate && effect.like.empty()
              ? Grade::established
              : Grade::leading;
 }

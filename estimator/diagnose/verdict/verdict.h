@@ -46,6 +46,8 @@ enum class Grade {
   established,  ///< no rival comes near, and only noise is left
   leading,      ///< the best of several, or another cause remains in the residual
 };
+/// Confidence from which on a name is established.
+inline constexpr double kEstablished = 0.95;
 Grade grade_of(const FoundEffect& effect);
 const char* grade_word(Grade grade);
 

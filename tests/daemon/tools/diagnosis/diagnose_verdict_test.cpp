@@ -1,25 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 
-#include <limits>
-
 #include <gtest/gtest.h>
 
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::daemon {
 namespace diagnose_verdict_test {
-
-TEST(ConfidenceWords, GiveTheShareThatAnEffectExplainsAlone) {
-  estimator::FoundEffect found;
-  found.confidence = 0.5;
-  found.chosen.fraction = 0.84;
-  EXPECT_EQ(confidence_words(found),
-            "possible, others are nearly as good (confidence 50 %), it explains 84 % of what the "
-            "sensors' noise does not");
-  found.chosen.fraction = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(confidence_words(found), "possible, others are nearly as good (confidence 50 %)");
-}
 
 constexpr double kTrue = test::kNoise_mps2 / 5;  // density: the root of half of 50 Hz is 5
 

@@ -46,5 +46,25 @@ TEST(EffectOf, ListsEquallyGoodNames) {
   EXPECT_DOUBLE_EQ(found.confidence, 0.5);
 }
 
+TEST(NearRivals, AreThoseThatKeepTheConfidenceLow) {
+  const HandMade made;
+  const auto found = [&](double margin) {
+    return effect_of({made.trial(EffectKind::cubic_stiffness, 500),
+                      made.trial(EffectKind::bouc_wen, 500 - margin),
+                      made.trial(EffectKind::pinching, 300)});
+  };
+  constexpr double kSure = 0.95;
+  const double limit = 20 * std::log(0.5 / (1 - kSure));
+  const FoundEffect near = found(limit - 1);
+  ASSERT_EQ(near_rivals(near, kSure).size(), 1U);
+  EXPECT_EQ(near_rivals(near, kSure)[0]->kind, EffectKind::bouc_wen);
+  EXPECT_LT(near.confidence, kSure);
+  EXPECT_TRUE(near_rivals(found(limit + 1), kSure).empty());
+  EXPECT_GT(found(limit + 1).confidence, kSure);
+  FoundEffect together = near;  // its own trial says nothing
+  together.chosen.fraction = std::nan("");
+  EXPECT_TRUE(near_rivals(together, kSure).empty());
+}
+
 }  // namespace found_effect_test
 }  // namespace framewatch::estimator
