@@ -190,6 +190,19 @@ Json parameters_of(const DiagnoseOutput& o) {
   return out;
 }
 
+Json provenance_of(const DiagnoseOutput& o) {
+  Json files = Json::array();
+  for (std::size_t r = 0; r < o.records.size(); ++r)
+    files.push_back({{"file", o.records[r].path},
+                     {"sha256", o.records[r].sha256},
+                     {"use", r < o.holdout_from ? "train" : "holdout"}});
+  return {{"config", o.config.path},
+          {"config_sha256", o.config.sha256},
+          {"records", files},
+          {"version", FRAMEWATCH_VERSION},
+          {"command", "diagnose"}};
+}
+
 }  // namespace
 
 std::string diagnosis_json(const DiagnoseOutput& o) {
@@ -261,16 +274,7 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
   out["measure_next"] = next_measurement(o);
   out["evidence"] = evidence_json(o);
   out["parameters"] = parameters_of(o);
-  Json files = Json::array();
-  for (std::size_t r = 0; r < o.records.size(); ++r)
-    files.push_back({{"file", o.records[r].path},
-                     {"sha256", o.records[r].sha256},
-                     {"use", r < o.holdout_from ? "train" : "holdout"}});
-  out["provenance"] = {{"config", o.config.path},
-                       {"config_sha256", o.config.sha256},
-                       {"records", files},
-                       {"version", FRAMEWATCH_VERSION},
-                       {"command", "diagnose"}};
+  out["provenance"] = provenance_of(o);
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
