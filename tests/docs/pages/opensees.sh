@@ -1,0 +1,3 @@
+before() {
+  cp "$root/configs/table_two_story.toml" building.toml
+}
