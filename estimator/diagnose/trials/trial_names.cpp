@@ -63,6 +63,13 @@ bool yields(const ModelEffect& slack) {
          slack.deformation;
 }
 
+/// Returns true for a spring that hardens up to a limit. A contact or a power of the deformation,
+/// which are fitted too, are the catalog's laws for that.
+bool hardens_to_a_limit(const ModelEffect& effect) {
+  return effect.form == LawForm::saturating &&
+         effect.parameters[SaturationIndex::force].plain() > 0;
+}
+
 }  // namespace
 
 bool is_excluded(const TrialContext& c, EffectKind kind) {
@@ -89,6 +96,7 @@ bool may_be_named(const TrialContext& c, const Trial& t) {
     if (has_wrong_sign(effect)) return false;
     if (effect.form == LawForm::resonator && is_no_oscillator(c, effect)) return false;
     if (effect.form == LawForm::slack && !yields(effect)) return false;
+    if (hardens_to_a_limit(effect)) return false;
     const bool slips = effect.form == LawForm::pinched || effect.form == LawForm::slip_lock;
     if (slips && (dissipation(effect) < kDissipates ||
                   effect.parameters[HysteresisIndex::width].plain() < kNarrowestSlip ||
