@@ -6,9 +6,9 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/clocks.h"
 #include "daemon/config/keys/weather_options.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "daemon/monitor/history/history_days.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_schema.h"
 #include "drivers/files/input_file.h"
@@ -258,12 +258,12 @@ bool is_note(const StoredAcknowledgement& a) {
 }
 
 std::vector<std::int64_t> SummaryQuery::maintenance_days() {
-  SqliteStatement s =
-      file_.prepare("SELECT time_us FROM acknowledgement WHERE kind = ? ORDER BY time_us");
+  SqliteStatement s = file_.prepare(
+      "SELECT time_us FROM acknowledgement WHERE kind = ? AND time_us >= 0 ORDER BY time_us");
   s.bind(1, std::string(kMaintenanceKind));
   std::vector<std::int64_t> out;
   while (s.row())
-    if (const std::int64_t day = floor_day(s.integer(0)); out.empty() || out.back() != day)
+    if (const std::int64_t day = s.integer(0) / kDay_us; out.empty() || out.back() != day)
       out.push_back(day);
   return out;
 }
