@@ -227,9 +227,10 @@ void add_diagnose(CommandList& commands) {
       ->check(CLI::Range(1, 256));
   arguments.limit_s = kDiagnoseLimit_s;
   command
-      ->add_option("--limit", arguments.limit_s,
-                   "longest time, s: the search ends with what it has found, and says what it did "
-                   "not do (default 300; 0: no limit)")
+      ->add_option(
+          "--limit", arguments.limit_s,
+          "longest time, s: the search ends with what it has found, and says what it\ndid not "
+          "do (default 300; 0: no limit)")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.0, 1e6))
       ->envname("FRAMEWATCH_DIAGNOSE_LIMIT");
