@@ -13,7 +13,6 @@
 #include "daemon/base/printable.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/events/event_messages.h"
-#include "daemon/monitor/service/command_client.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 
@@ -118,6 +117,23 @@ void AcknowledgeDesk::update(const Raised& raised, std::int64_t now_us) {
   lcm_.publish(config_.lcm.prefix + "ACKNOWLEDGED", &out);
 }
 
+std::optional<acknowledged_t> ask_daemon(const Config& config, const CommandPacket& command,
+                                         RefusedCommand& refused) {
+  const CommandAnswer answer = give_command(config, "run", command);
+  auto done = drivers::decoded<acknowledged_t>(answer.bytes);
+  if (!answer.answered)
+    refused = {kUnreachable, answer.problem};
+  else if (!answer.problem.empty())
+    refused = {kRefused, answer.problem};
+  else if (!done)
+    refused = {kUnreachable, "cannot read the daemon's answer: is it another version?"};
+  else if (!done->refused.empty())
+    refused = {kRefused, done->refused};
+  else
+    return done;
+  return std::nullopt;
+}
+
 int acknowledge_command(const AcknowledgeArguments& a) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(a.config, problems);
@@ -128,13 +144,9 @@ int acknowledge_command(const AcknowledgeArguments& a) {
                fmt::format("'{}' is not the number of an event, and not all", a.event));
   if (!config || !id) return kUnreachable;
   const acknowledge_t request = acknowledge_request(*id, a.who, a.comment);
-  const CommandAnswer answer =
-      give_command(*config, "run", {"ACKNOWLEDGE", drivers::encoded(request)});
-  if (!answer.answered) return stop(kUnreachable, answer.problem);
-  if (!answer.problem.empty()) return stop(kRefused, answer.problem);
-  const auto done = drivers::decoded<acknowledged_t>(answer.bytes);
-  if (!done) return stop(kUnreachable, "cannot read the daemon's answer: is it another version?");
-  if (!done->refused.empty()) return stop(kRefused, done->refused);
+  RefusedCommand refused;
+  const auto done = ask_daemon(*config, {"ACKNOWLEDGE", drivers::encoded(request)}, refused);
+  if (!done) return stop(refused.exit_code, refused.why);
   for (std::size_t i = 0; i < done->id.size(); ++i)
     fmt::print("{}\n", printable(fmt::format("{} {} ({}) is acknowledged by {}", done->kind[i],
                                              done->place[i], done->id[i], done->who[i])));

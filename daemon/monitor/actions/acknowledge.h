@@ -15,6 +15,7 @@
 #include "daemon/base/log.h"
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
+#include "daemon/monitor/service/command_client.h"
 #include "daemon/monitor/service/service_manager.h"
 
 namespace lcm {
@@ -65,6 +66,16 @@ class AcknowledgeDesk {
   std::string refused_;
   std::optional<Acknowledgement> all_;  ///< by the newest request for all events
 };
+
+struct RefusedCommand {
+  int exit_code = 0;  ///< 1: the daemon refuses; 2: it does not answer, or not readably
+  std::string why;
+};
+
+/// Gives the running daemon a command that it answers with an acknowledged_t. Returns nullopt and
+/// sets `refused` if it does not obey.
+std::optional<acknowledged_t> ask_daemon(const Config& config, const CommandPacket& command,
+                                         RefusedCommand& refused);
 
 struct AcknowledgeArguments {
   std::string event;  ///< number of the event, or "all"

@@ -11,15 +11,14 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
-#include "daemon/monitor/service/command_client.h"
+#include "daemon/monitor/actions/acknowledge.h"
 #include "drivers/files/encoded.h"
-#include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kMaxNote = 500;  // bytes, as of a comment
-constexpr int kNoteRefused = 1, kNoNote = 2;
+constexpr int kNoNote = 2;
 
 bool is_blank(const std::string& text) {
   return std::ranges::all_of(text, [](unsigned char c) { return std::isspace(c) != 0; });
@@ -65,12 +64,10 @@ int note_command(const NoteArguments& a) {
   acknowledge_t request =
       acknowledge_request(a.maintenance ? kMaintenance : kPlainNote, a.who, a.text);
   request.time_us = *at_us;
-  const CommandAnswer answer =
-      give_command(*config, "run", {kNoteCommand, drivers::encoded(request)});
-  if (!answer.answered) return say(kNoNote, answer.problem);
-  if (!answer.problem.empty()) return say(kNoteRefused, answer.problem);
-  const auto done = drivers::decoded<acknowledged_t>(answer.bytes);
-  if (!done || done->id.size() != 1)
+  RefusedCommand refused;
+  const auto done = ask_daemon(*config, {kNoteCommand, drivers::encoded(request)}, refused);
+  if (!done) return say(refused.exit_code, refused.why);
+  if (done->id.size() != 1)
     return say(kNoNote, "cannot read the daemon's answer: is it another version?");
   fmt::print("{}\n",
              printable(fmt::format("{} of {} by {}: {}", done->kind[0], utc_text(done->since_us[0]),

@@ -25,7 +25,7 @@ struct DiagnoseArguments {
   std::vector<std::string> without;  ///< names of effects to exclude
   estimator::ComponentTest component;
   int threads = 0;     ///< 0: as many as the machine has
-  double limit_s = 0;  ///< of the search; 0: none
+  double limit_s = 0;  ///< of the diagnosis, in which it must end its search; 0: none
   bool quiet = false;
 };
 

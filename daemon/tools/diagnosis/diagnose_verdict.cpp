@@ -45,6 +45,16 @@ constexpr std::array kKindWords = {
 };
 static_assert(kKindWords.size() == static_cast<std::size_t>(estimator::LawKind::external) + 1);
 
+/// Returns a name with spaces: "cubic stiffness".
+std::string spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string spaced(estimator::EffectKind kind) {
+  return spaced(std::string(name_of(kind)));
+}
+
 /// Returns the place whose kind was examined; nullptr without one, or if it needs a linear element.
 const estimator::WhereEntry* of_kind(const DiagnoseOutput& o) {
   for (const estimator::WhereEntry& w : o.diagnosis.where)
@@ -134,13 +144,6 @@ constexpr std::array kPlainNames = {
 };
 static_assert(kPlainNames.size() == static_cast<std::size_t>(estimator::EffectKind::swapped) + 1);
 
-/// Returns the name with spaces: "cubic stiffness".
-std::string spaced(estimator::EffectKind kind) {
-  std::string name(name_of(kind));
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 /// Returns true if an effect differs from the law of its name.
 bool is_approximate(const DiagnoseOutput& o) {
   const std::vector<estimator::FoundEffect>& found = o.diagnosis.effects;
@@ -199,10 +202,9 @@ std::string kind_section(const DiagnoseOutput& o) {
   if (!where) return "";
   std::vector<std::vector<std::string>> rows;
   for (const estimator::LawKind kind : kReportedKinds) {
-    std::string word = law_kind_word(kind);
-    std::replace(word.begin(), word.end(), '_', ' ');
     rows.push_back(
-        {word, fmt::format("{:.0f} %", 100 * where->kind->share[static_cast<std::size_t>(kind)])});
+        {spaced(law_kind_word(kind)),
+         fmt::format("{:.0f} %", 100 * where->kind->share[static_cast<std::size_t>(kind)])});
   }
   const estimator::KindOfLaw& kind = *where->kind;
   return "<h2>What sort of force</h2>\n<p>" + html_text(kind_sentence(o)) +

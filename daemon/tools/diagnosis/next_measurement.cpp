@@ -23,10 +23,6 @@ bool is_external(EffectKind kind) {
   return kind == EffectKind::unmeasured_force;
 }
 
-bool changes_with_time(EffectKind kind) {
-  return estimator::changes_with_time(kind);
-}
-
 bool is_dissipative(EffectKind kind) {
   return estimator::is_of_kind(kind, LawKind::dissipative);
 }
@@ -81,7 +77,7 @@ std::string for_kinds(const Between& b) {
         "Record the building while the ground rests and with machines off, then on: a force from "
         "outside at {} acts without motion of the base.",
         b.place(*b.find(is_external)));
-  if (b.differ(changes_with_time))
+  if (b.differ(estimator::changes_with_time))
     return "Record weak motion again: a stiffness that was lost stays lost, a law of the "
            "deformation gives the stiffness of small motion back.";
   if (b.differ(is_dissipative) && b.find(is_restoring))

@@ -14,10 +14,6 @@ constexpr double kMargin = 20;     ///< difference that reduces the doubt by the
 constexpr double kLargest = 1e3;   ///< without a rival
 constexpr double kSurest = 0.999;  ///< confidence
 
-}  // namespace
-
-namespace {
-
 /// margin: cost of the best rival minus that of the effect.
 double confidence_of(double margin) {
   return std::min(kSurest, 1 - kDoubtful * std::exp(-margin / kMargin));

@@ -124,8 +124,8 @@ class Diagnoser {
     return done;
   }
 
-  /// Fits the models of the result and sets their errors and gaps. What there is no time for is
-  /// taken from the search.
+  /// Fits the models of the result and sets their errors and gaps. If the time ends, keeps the
+  /// models that the search fitted.
   void finish(const FitResult& now, const std::vector<FoundEffect>& ramps) {
     const auto in_time_or_told = [&](const char* what, const std::function<void()>& work) {
       const bool done = in_time(1, work);

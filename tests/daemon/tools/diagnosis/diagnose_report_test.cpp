@@ -91,7 +91,7 @@ struct Case {
   }
 };
 
-/// What holds of every page.
+/// Checks what every page must hold.
 void expect_sound(const DiagnoseOutput& o) {
   const std::string page = diagnosis_report(o);
   EXPECT_TRUE(page.starts_with("<!doctype html>") || page.starts_with("<!DOCTYPE html>"));
