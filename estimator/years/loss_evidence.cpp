@@ -33,7 +33,8 @@ LossEvidence::LossEvidence(const Eigen::VectorXd& prior, double life_d, double l
   const Eigen::Index n = prior.size() + 1;
   for (const double wander : kWander)
     for (const double wander_d : kWander_d) {
-      Candidate c{wander, wander_d, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), 0, {}};
+      Candidate c{wander, wander_d, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), 0,
+                  {},     {}};
       c.covariance.diagonal().head(n - 1) = prior.array().square();
       c.covariance(n - 1, n - 1) = wander * wander;
       candidates_.push_back(std::move(c));
@@ -41,12 +42,12 @@ LossEvidence::LossEvidence(const Eigen::VectorXd& prior, double life_d, double l
 }
 
 void LossEvidence::push(double day, const Eigen::VectorXd& regressors, double regressors_doubt,
-                        double value, double variance) {
+                        double value, double variance, const Eigen::MatrixXd& errors) {
   const double days = begun_ ? day - last_day_ : 0;
   begun_ = true;
   last_day_ = day;
   for (Candidate& c : candidates_)
-    update(c, day, days, regressors, regressors_doubt, value, variance);
+    update(c, day, days, regressors, regressors_doubt, value, variance, errors);
   judge();
   thin();
 }
@@ -54,7 +55,8 @@ void LossEvidence::push(double day, const Eigen::VectorXd& regressors, double re
 /// One step of Kalman's filter, and the effect that a unit step has on it.
 /// docs/equations.md (69).
 void LossEvidence::update(Candidate& c, double day, double days, const Eigen::VectorXd& regressors,
-                          double regressors_doubt, double value, double variance) {
+                          double regressors_doubt, double value, double variance,
+                          const Eigen::MatrixXd& errors) {
   const Eigen::Index w = regressors.size();
   const double kept = std::exp(-days / c.wander_d);
   c.mean[w] *= kept;
@@ -62,7 +64,8 @@ void LossEvidence::update(Candidate& c, double day, double days, const Eigen::Ve
   c.covariance.col(w) *= kept;
   c.covariance(w, w) += c.wander * c.wander * (1 - kept * kept);
   for (Bet& bet : c.bets) bet.effect[w] *= kept;
-  c.bets.push_back({day, c.log_likelihood, Eigen::VectorXd::Zero(w + 1)});
+  for (Suspicion& s : c.suspicions) s.effect[w] *= kept;
+  c.bets.push_back({day, c.log_likelihood, Eigen::VectorXd::Zero(w + 1), {}});
 
   Eigen::VectorXd h(w + 1);
   h << regressors, 1;
@@ -77,9 +80,18 @@ void LossEvidence::update(Candidate& c, double day, double days, const Eigen::Ve
   c.log_likelihood -= 0.5 * (std::log(2 * M_PI * total) + off * off / total);
   for (Bet& bet : c.bets) {
     const double seen = 1 - h.dot(bet.effect);
-    bet.information += seen * seen / total;
-    bet.score += seen * off / total;
+    bet.size.information += seen * seen / total;
+    bet.size.score += seen * off / total;
     bet.effect += gain * (seen / total);
+  }
+  for (std::size_t i = 0; i < c.suspicions.size(); ++i) {
+    Suspicion& s = c.suspicions[i];
+    // Wrong regressors make the model expect a change that does not come.
+    const double felt =
+        -c.mean.head(w).dot(errors.col(static_cast<Eigen::Index>(i))) - h.dot(s.effect);
+    s.factor.information += felt * felt / total;
+    s.factor.score += felt * off / total;
+    s.effect += gain * (felt / total);
   }
   c.mean += gain * (off / total);
   c.covariance -= gain * gain.transpose() / total;
@@ -88,7 +100,7 @@ void LossEvidence::update(Candidate& c, double day, double days, const Eigen::Ve
 /// Returns what a bet claims: the step's size, and the logarithm of its likelihood over that of the
 /// same candidate without it, averaged over the prior of the size.
 LossEvidence::Claim LossEvidence::claim_of(const Bet& bet) const {
-  const double a = bet.information, b = bet.score, usual = kUsualStep * kUsualStep;
+  const double a = bet.size.information, b = bet.size.score, usual = kUsualStep * kUsualStep;
   const double variance = 1 / (1 / usual + a), error = std::sqrt(variance);
   const double beyond = -(b + least_ * a);  // score of what exceeds the least step
   return {b * variance, error,
@@ -121,14 +133,15 @@ void LossEvidence::judge() {
   log_capital_ = std::log(capital);
 }
 
-/// Stops following the bet whose neighbours in time are closest, measured by its age. It keeps its
-/// capital, as a player who leaves does.
+/// Stops following the bet whose neighbours in time are closest, measured by its age, but never the
+/// one with the largest capital. It keeps its capital, as a player who leaves does.
 void LossEvidence::thin() {
   const std::vector<Bet>& bets = candidates_.front().bets;
   if (bets.size() <= kBets) return;
   std::size_t least = 1;
   double closest = std::numeric_limits<double>::infinity();
   for (std::size_t b = 1; b + 1 < bets.size(); ++b) {
+    if (bets[b].day == step_.day) continue;
     const double gap = (bets[b + 1].day - bets[b - 1].day) / (last_day_ - bets[b].day + 1);
     if (gap < closest) closest = gap, least = b;
   }
@@ -138,9 +151,27 @@ void LossEvidence::thin() {
     c.bets.erase(c.bets.begin() + static_cast<std::ptrdiff_t>(least));
 }
 
+void LossEvidence::suspect() {
+  for (Candidate& c : candidates_)
+    c.suspicions.push_back({Eigen::VectorXd::Zero(c.mean.size()), {}});
+}
+
+void LossEvidence::drop_suspicion(std::size_t index) {
+  for (Candidate& c : candidates_)
+    c.suspicions.erase(c.suspicions.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+LossEvidence::Likelihood LossEvidence::suspicion(std::size_t index) const {
+  return likeliest().suspicions[index].factor;
+}
+
+const LossEvidence::Candidate& LossEvidence::likeliest() const {
+  return *std::ranges::max_element(candidates_, {}, &Candidate::log_likelihood);
+}
+
 Eigen::VectorXd LossEvidence::coefficients() const {
-  const auto& likeliest = *std::ranges::max_element(candidates_, {}, &Candidate::log_likelihood);
-  return likeliest.mean.head(likeliest.mean.size() - 1);
+  const Candidate& c = likeliest();
+  return c.mean.head(c.mean.size() - 1);
 }
 
 void LossEvidence::accept(double std_error) {

@@ -28,9 +28,22 @@ class LossEvidence {
   LossEvidence(const Eigen::VectorXd& prior, double life_d, double least);
 
   /// Takes a value of a day later than the one before. variance: of its noise. regressors_doubt:
-  /// see WeatherLags::doubt().
+  /// see WeatherLags::doubt(). errors: a column for each suspicion, by how much the regressors are
+  /// wrong today if it is right.
   void push(double day, const Eigen::VectorXd& regressors, double regressors_doubt, double value,
-            double variance);
+            double variance, const Eigen::MatrixXd& errors);
+
+  /// The logarithm of the likelihood of values with an effect of some size, over that without it,
+  /// is score * size - information * size^2 / 2.
+  struct Likelihood {
+    double information = 0, score = 0;
+  };
+  /// Adds a suspicion that the regressors are wrong from the next day on, as the last one.
+  void suspect();
+  void drop_suspicion(std::size_t index);
+  /// Returns what the values say of a suspicion: of a factor of its errors, for the candidate that
+  /// is likeliest without it.
+  Likelihood suspicion(std::size_t index) const;
   /// Returns the logarithm of the capital.
   double log_capital() const { return log_capital_; }
 
@@ -50,9 +63,13 @@ class LossEvidence {
  private:
   struct Bet {
     double day;
-    double log_likelihood_before;       ///< of its candidate, before that day
-    Eigen::VectorXd effect;             ///< of a unit step on the state's mean
-    double information = 0, score = 0;  ///< of the step's size
+    double log_likelihood_before;  ///< of its candidate, before that day
+    Eigen::VectorXd effect;        ///< of a unit step on the state's mean
+    Likelihood size;               ///< of the step
+  };
+  struct Suspicion {
+    Eigen::VectorXd effect;  ///< of the errors on the state's mean
+    Likelihood factor;
   };
   /// One candidate: w with this standard deviation and time constant.
   struct Candidate {
@@ -61,9 +78,12 @@ class LossEvidence {
     Eigen::MatrixXd covariance;
     double log_likelihood = 0;
     std::vector<Bet> bets;  ///< oldest first, alike in all candidates
+    std::vector<Suspicion> suspicions;
   };
   void update(Candidate& candidate, double day, double days, const Eigen::VectorXd& regressors,
-              double regressors_doubt, double value, double variance);
+              double regressors_doubt, double value, double variance,
+              const Eigen::MatrixXd& errors);
+  const Candidate& likeliest() const;
   struct Claim {
     double size, std_error, log_ratio;
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -38,13 +39,29 @@ class WeatherLags {
   /// infinite before its first value.
   double doubt() const;
 
+  /// How a covariate's means change in two days. A sensor that goes wrong within a day has changed
+  /// them all after two.
+  struct Change {
+    double size = 0;      ///< of the newest mean; 0: not known
+    double variance = 1;  ///< of such changes before
+  };
+  Change change(std::size_t covariate) const { return past_[covariate].change; }
+  /// Takes the newest change of a covariate's mean, which began on the day before, back.
+  void take_back(std::size_t covariate, double size);
+
  private:
   struct Past {
     bool known = false;
     double day = 0;  ///< of the newest value
     double first = 0, newest = 0;
     double lagged[4] = {}, frost = 0;
+    double doubt[4] = {};               ///< standard deviations of `lagged`, of its scale
+    double before_day = 0, before = 0;  ///< of the value before the newest
+    Change change;
+    double square = 0;  ///< running mean of the squares of changes
   };
+  void set_regressors();
+
   std::vector<Covariate> covariates_;
   std::vector<Past> past_;
   Eigen::VectorXd regressors_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "estimator/numeric/nan.h"
+#include "estimator/numeric/quantile.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -15,6 +16,13 @@ constexpr double kUsualOfAll = 0.03, kUsualOfOne = 0.015;
 constexpr double kLevel = 1;  // prior of the level, which is not known at the start
 /// An element without a value stands where it usually does beside the others, within this error.
 constexpr double kUnseen = 0.005, kUsual_d = 30;
+
+/// A day's value that is so many times the usual one, or less than that share of it, is not the
+/// stiffness: a sensor was wrong, or a unit. Damage that large comes to stay, and other watches
+/// tell it the same minute.
+constexpr double kFar = 1.6;
+constexpr int kStays = 3;          // far values that are near each other
+constexpr std::size_t kFirst = 5;  // values whose median is an element's first reference
 
 Eigen::VectorXd prior_of(int regressors, double usual) {
   Eigen::VectorXd out = Eigen::VectorXd::Constant(regressors, usual);
@@ -46,7 +54,7 @@ DayValue DayMean::mean() const {
 
 YearsWatch::YearsWatch(std::size_t elements, const std::vector<Covariate>& covariates,
                        const LifeBudget& budget)
-    : elements_(elements), weather_(covariates) {
+    : elements_(elements), weather_(covariates), sensors_(covariates) {
   const double life_d = WeatherLags::kYear_d * budget.years,
                least = -std::log1p(-budget.least_loss);
   if (elements > 1)
@@ -75,7 +83,45 @@ Eigen::VectorXd YearsWatch::regressors() const {
 }
 
 double YearsWatch::evidence(int element) const {
-  return std::max(series(element).log_capital(), 0.0) / proof_;
+  return std::max(series(element).log_capital() - sensors_.excuse(), 0.0) / proof_;
+}
+
+/// Removes values that are far from those of their element on the days before, until one has come
+/// to stay. An element without a reference collects its first values, and begins again if no later
+/// value is near them.
+void YearsWatch::leave_out(std::vector<DayValue>& values) {
+  std::vector<double> off;
+  for (std::size_t p = 0; p < elements_.size(); ++p) {
+    const Element& e = elements_[p];
+    if (is_value(values[p]) && e.known)
+      off.push_back(std::log(values[p].value) - e.reference - e.usual);
+  }
+  // The median of the elements, if it is near the one of the last day.
+  const double all = off.empty() ? all_ : mean_median(off),
+               from = std::abs(all - all_) < std::log(kFar) ? all : all_;
+  for (std::size_t p = 0; p < elements_.size(); ++p) {
+    Element& e = elements_[p];
+    if (!is_value(values[p])) continue;
+    const double log = std::log(values[p].value);
+    if (!e.known) {
+      e.first.push_back(log);
+      e.known = e.first.size() == kFirst;
+      if (e.known) e.reference = mean_median(e.first) - from;
+    }
+    if (!e.known) {
+      values[p] = {kNaN, kNaN};
+      continue;
+    }
+    if (std::abs(log - e.reference - e.usual - from) < std::log(kFar)) {
+      e.near = true;
+      e.away = 0;
+      continue;
+    }
+    e.away = e.away > 0 && std::abs(log - e.far) < std::log(kFar) ? e.away + 1 : 1;
+    e.far = log;
+    if (e.away <= kStays || !e.near) values[p] = {kNaN, kNaN};
+    if (e.away > kStays && !e.near) e = Element();
+  }
 }
 
 /// Brings every element to the present day. Returns false if none has a value.
@@ -88,26 +134,19 @@ bool YearsWatch::take(double days, const std::vector<DayValue>& values) {
     all += std::log(values[p].value) - e.reference - e.usual;
     ++seen;
   }
-  const bool first =
-      std::none_of(elements_.begin(), elements_.end(), [](const Element& e) { return e.known; });
-  if (seen == 0 && !first) return false;
-  if (seen > 0) all /= seen;
+  if (seen == 0) return false;
+  all /= seen;
+  all_ = all;
   const double rate = 1 - std::exp(-days / kUsual_d);
-  bool any = false;
   for (std::size_t p = 0; p < elements_.size(); ++p) {
     Element& e = elements_[p];
     const bool has = is_value(values[p]);
-    if (has && !e.known) {
-      e.known = true;
-      e.reference = std::log(values[p].value) - all;
-    }
     e.now = has ? std::log(values[p].value) - e.reference : all + e.usual;
     const double relative = has ? values[p].std_error / values[p].value : kUnseen;
     e.variance = relative * relative;
     if (has) e.usual += rate * (e.now - all - e.usual);
-    any = any || has;
   }
-  return any;
+  return true;
 }
 
 void YearsWatch::begin_anew() {
@@ -115,13 +154,17 @@ void YearsWatch::begin_anew() {
   for (LossEvidence& series : series_) series.accept(kLevel);
 }
 
-std::optional<YearsWatch::Finding> YearsWatch::push(double day, const std::vector<DayValue>& values,
+std::optional<YearsWatch::Finding> YearsWatch::push(double day, const std::vector<DayValue>& seen,
                                                     const std::vector<double>& weather) {
   weather_.push(day, weather);
+  sensors_.push(day, weather_, weather, series_);
   const double doubt = weather_.doubt();
-  if (!std::isfinite(doubt) || !take(days_ > 0 ? day - last_day_ : 0, values)) return std::nullopt;
+  if (!std::isfinite(doubt) || std::ranges::none_of(seen, is_value)) return std::nullopt;
+  const double days = days_++ > 0 ? day - last_day_ : 0;
   last_day_ = day;
-  ++days_;
+  std::vector<DayValue> values = seen;
+  leave_out(values);
+  if (!take(days, values)) return std::nullopt;
   const auto n = static_cast<double>(elements_.size());
   double sum = 0, variance = 0;
   for (const Element& e : elements_) sum += e.now, variance += e.variance;
@@ -130,14 +173,16 @@ std::optional<YearsWatch::Finding> YearsWatch::push(double day, const std::vecto
     if (!is_value(values[p])) continue;
     const double others = (sum - e.now) / (n - 1);
     series_[p].push(day, weather_.regressors(), doubt, e.now - others,
-                    e.variance + (variance - e.variance) / ((n - 1) * (n - 1)));
+                    e.variance + (variance - e.variance) / ((n - 1) * (n - 1)), sensors_.errors());
   }
-  series_.back().push(day, weather_.regressors(), doubt, sum / n, variance / (n * n));
+  series_.back().push(day, weather_.regressors(), doubt, sum / n, variance / (n * n),
+                      sensors_.errors());
+  sensors_.judge(series_);
 
   const auto most = std::max_element(series_.begin(), series_.end(), [](auto& a, auto& b) {
     return a.log_capital() < b.log_capital();
   });
-  if (most->log_capital() < proof_) return std::nullopt;
+  if (most->log_capital() - sensors_.excuse() < proof_) return std::nullopt;
   const LossEvidence::Step step = most->step();
   const bool all = most + 1 == series_.end();
   const auto which = static_cast<std::size_t>(most - series_.begin());

@@ -9,6 +9,7 @@
 
 #include "estimator/years/life_budget.h"
 #include "estimator/years/loss_evidence.h"
+#include "estimator/years/sensor_suspicions.h"
 #include "estimator/years/weather_lags.h"
 
 namespace framewatch::estimator {
@@ -47,7 +48,8 @@ class YearsWatch {
     double std_error;
   };
   /// Takes a day later than the one before. values: by element. weather: by covariate, NaN: not
-  /// known. Returns the loss that this day's values prove, if any. It then counts as known, and the
+  /// known. A value far from the element's others is left out unless it comes again and again.
+  /// Returns the loss that this day's values prove, if any. It then counts as known, and the
   /// watch goes on for further ones.
   std::optional<Finding> push(double day, const std::vector<DayValue>& values,
                               const std::vector<double>& weather);
@@ -63,6 +65,9 @@ class YearsWatch {
   /// Returns the most likely loss, proven or not, of which evidence() speaks.
   LossEvidence::Step step(int element) const { return series(element).step(); }
   int days() const { return days_; }
+  /// Returns the sensor of weather that is probably wrong for good, if any. What it explains does
+  /// not count as a loss.
+  std::optional<SensorSuspicions::Wrong> wrong_sensor() const { return sensors_.wrong(); }
 
   /// Returns what weather does to the logarithm of an element's stiffness, by regressor(), as far
   /// as the days so far tell. The first one, of the level, is 0.
@@ -73,20 +78,27 @@ class YearsWatch {
 
  private:
   struct Element {
-    bool known = false;
+    std::vector<double> first;     ///< logarithms of the first values
+    bool known = false;            ///< has a reference
+    bool near = false;             ///< a later value was near the first ones
+    int away = 0;                  ///< values in a row that were far from them and near each other
+    double far = 0;                ///< logarithm of the last one
     double reference = 0;          ///< logarithm of the value that counts as 0, with known losses
     double usual = 0;              ///< running mean of its difference from all
     double now = 0, variance = 0;  ///< of the present day, logarithms
   };
   const LossEvidence& series(int element) const;
   bool take(double days, const std::vector<DayValue>& values);
+  void leave_out(std::vector<DayValue>& values);
 
   std::vector<Element> elements_;
   WeatherLags weather_;
+  SensorSuspicions sensors_;
   std::vector<LossEvidence> series_;  ///< elements against the others, then all of them
   double proof_;                      ///< logarithm of the capital that proves a loss
   int days_ = 0;
   double last_day_ = 0;
+  double all_ = 0;  ///< mean of the elements' logarithms on that day, over their references
 };
 
 }  // namespace framewatch::estimator

@@ -59,6 +59,7 @@ HistoryLosses find_losses(Quantity quantity, const std::vector<ElementDays>& ele
       out.found.push_back(in_quantity(quantity, *loss));
   }
   out.days = watch.days();
+  out.wrong_sensor = watch.wrong_sensor();
   for (std::size_t p = 0; p < elements.size(); ++p) {
     const int element = static_cast<int>(p);
     out.state.push_back({elements[p].usual(), watch.evidence(element), watch.step(element)});
@@ -80,6 +81,16 @@ std::string maintenance_sentence(const std::vector<std::int64_t>& days) {
   return out.empty()
              ? ""
              : "the building was changed on purpose on " + out + ": the search began anew there";
+}
+
+std::string wrong_sensor_sentence(const HistoryLosses& l) {
+  if (!l.wrong_sensor) return "";
+  const estimator::SensorSuspicions::Wrong& w = *l.wrong_sensor;
+  const std::string& name = l.covariates[w.covariate];
+  return fmt::format("{} probably reads too {} since {}, by {}: what this explains does not count as a loss",
+                     name, w.size < 0 ? "low" : "high",
+                     day_text(static_cast<std::int64_t>(w.since_day)),
+                     with_error(std::abs(w.size), w.std_error));
 }
 
 std::string probability_text(double probability) {
@@ -142,6 +153,7 @@ std::string losses_text(const HistoryLosses& l) {
                   with.empty() ? "not known, the season stands for it" : with, losses_sentence(l));
   for (const auto& f : l.found) out += "  " + loss_sentence(l, f) + "\n";
   if (!l.maintenance_days.empty()) out += maintenance_sentence(l.maintenance_days) + "\n";
+  if (l.wrong_sensor) out += wrong_sensor_sentence(l) + "\n";
   out += fmt::format("\n{:<12} {:>12} {:>9}  {}\n", "element", "median, N/m", "evidence",
                      "most likely");
   for (const auto& row : losses_rows(l))
@@ -192,6 +204,13 @@ std::string losses_json(const HistoryLosses& l, const HistoryLosses& damping) {
                    {"damping", findings(damping)},    {"elements", ordered_json::array()}};
   out["maintenance"] = ordered_json::array();
   for (const std::int64_t day : l.maintenance_days) out["maintenance"].push_back(day_text(day));
+  if (l.wrong_sensor) {
+    const estimator::SensorSuspicions::Wrong& w = *l.wrong_sensor;
+    out["wrong_sensor"] = {{"covariate", l.covariates[w.covariate]},
+                           {"since", day_text(static_cast<std::int64_t>(w.since_day))},
+                           {"reads_too_much", w.size},
+                           {"std_error", w.std_error}};
+  }
   for (std::size_t p = 0; p < l.state.size(); ++p)
     out["elements"].push_back({{"parameter", p == l.elements.size() ? kAll : l.elements[p].c_str()},
                                {"evidence", l.state[p].evidence},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct HistoryLosses {
   };
   std::vector<State> state;  ///< by element, then of all of them alike
   estimator::LifeBudget budget;
+  std::optional<estimator::SensorSuspicions::Wrong> wrong_sensor;  ///< of `covariates`
 };
 
 /// Watches the elements by their daily means, from the first day on. maintenance_days:
@@ -41,6 +43,9 @@ HistoryLosses find_losses(Quantity quantity, const std::vector<ElementDays>& ele
 bool begins_anew(const std::vector<std::int64_t>& maintenance_days, std::int64_t day);
 /// Returns what these days mean for the search; "" without any.
 std::string maintenance_sentence(const std::vector<std::int64_t>& days);
+
+/// Returns which sensor of weather is probably wrong; "" if none is.
+std::string wrong_sensor_sentence(const HistoryLosses& losses);
 
 /// Returns how many losses there are, and what that means.
 std::string losses_sentence(const HistoryLosses& losses);

@@ -141,6 +141,7 @@ std::string history_page(const std::string& structure, const std::vector<Element
   body += "<h2>Losses</h2>\n<p>" + html_text(losses_sentence(losses)) + ".</p>\n";
   if (!losses.maintenance_days.empty())
     body += "<p>" + html_text(maintenance_sentence(losses.maintenance_days)) + ".</p>\n";
+  if (losses.wrong_sensor) body += "<p>" + html_text(wrong_sensor_sentence(losses)) + ".</p>\n";
   for (const auto& f : losses.found)
     body += "<p><strong>" + html_text(printable(loss_sentence(losses, f))) + ".</strong></p>\n";
   std::vector<std::vector<std::string>> rows = losses_rows(losses);

@@ -186,6 +186,7 @@ std::vector<std::string> sentences_of(const MonthData& data,
     if (a.kind == kMaintenanceKind)
       out.push_back(fmt::format("Changed on purpose on {}: {}", day_text(floor_day(a.time_us)),
                                 printable(a.comment)));
+  if (data.losses.wrong_sensor) out.push_back("Weather: " + wrong_sensor_sentence(data.losses));
   out.push_back(coverage_sentence(elements, month));
   out.push_back(sample_sentence(data.channels));
   out.push_back(event_sentence(data));

@@ -24,7 +24,8 @@ constexpr int kStories = 8;
 constexpr double kYear_d = 365.25;
 constexpr double kStiffness = 5e8;  // N/m
 constexpr double kNoise = 0.006;    // of a day's value
-constexpr int kLossDay = 400, kThreeYears_d = 1096, kTwelveYears_d = 4383, kThirtyYears_d = 10957;
+constexpr int kLossDay = 400, kThreeYears_d = 1096, kFiveYears_d = 1826, kTwelveYears_d = 4383,
+              kThirtyYears_d = 10957;
 /// Largest error of a loss's size in some hundred draws, in standard errors.
 constexpr double kMostErrors = 5;
 
@@ -224,6 +225,62 @@ TEST(Years, AThermometerThatIsAwayOrSticksRaisesNothing) {
             0);
 }
 
+/// Runs worlds of five years whose thermometer reads `wrong(day)` too much. Returns the findings.
+int alarms_with(int runs, const std::function<double(int day)>& wrong) {
+  int out = 0;
+  for (int seed = 0; seed < runs; ++seed)
+    out += static_cast<int>(
+        run(static_cast<unsigned>(seed), kFiveYears_d, {}, [&](int day, Seen& seen) {
+          seen.weather[0] += wrong(day);
+        }).size());
+  return out;
+}
+
+TEST(Years, AThermometerThatLiesRaisesNothing) {
+  for (const double degc : {-20.0, -10.0, -5.0, 5.0, 10.0})
+    for (const int from : {60, 900}) {
+      const int found = alarms_with(draws(1), [=](int day) { return day >= from ? degc : 0.0; });
+      EXPECT_EQ(found, 0) << degc << " degC from day " << from;
+    }
+  EXPECT_EQ(alarms_with(draws(1), [](int day) { return day >= 700 && day < 900 ? -10.0 : 0.0; }),
+            0);
+  for (const double degc_per_year : {-1.0, 1.0})
+    EXPECT_EQ(alarms_with(draws(1), [=](int day) { return degc_per_year * day / kYear_d; }), 0);
+}
+
+TEST(Years, AThermometerThatLiesIsToldAndALossAfterItIsFound) {
+  constexpr int kLie = 800, kLoss = 900;
+  constexpr double kOff_d = 10;
+  int all_told = 0;
+  for (unsigned seed = 0; seed < 4; ++seed)
+    for (const double degc : {-10.0, 10.0}) {
+      World world(seed);
+      YearsWatch watch(kStories, kWeather, LifeBudget{});
+      std::vector<YearsWatch::Finding> found;
+      bool told = false;
+      for (int day = 1; day <= kLoss + 60; ++day) {
+        if (day == kLoss) world.stories[2].left = 0.95;
+        world.next();
+        std::vector<DayValue> values;
+        for (const World::Story& s : world.stories) values.push_back({s.value, kNoise * s.value});
+        const auto loss =
+            watch.push(day, values, {world.degc + (day >= kLie ? degc : 0), world.percent});
+        if (loss) found.push_back(*loss);
+        const auto wrong = watch.wrong_sensor();
+        if (!wrong || day < kLie) continue;
+        told = true;
+        EXPECT_EQ(wrong->covariate, 0);
+        EXPECT_NEAR(wrong->since_day, kLie, kOff_d);
+        EXPECT_LT(std::abs(wrong->size - degc), kMostErrors * wrong->std_error);
+      }
+      ASSERT_EQ(found.size(), 1) << seed << " " << degc;
+      EXPECT_EQ(found[0].element, 2);
+      EXPECT_LE(found[0].found_day - kLoss, 20);
+      all_told += told ? 1 : 0;
+    }
+  EXPECT_GE(all_told, 5);  // of 8; elements that hardly follow the temperature do not show it
+}
+
 TEST(Years, DaysAndElementsWithoutValuesRaiseNothing) {
   EXPECT_EQ(alarms(draws(8),
                    [](int day, Seen& seen) {
@@ -232,6 +289,67 @@ TEST(Years, DaysAndElementsWithoutValuesRaiseNothing) {
                      if (day > 300 && day < 600) seen.values[2] = {kNaN, kNaN};
                    }),
             0);
+}
+
+/// Stiffness of a real six-story building in eleven earthquakes (San Bernardino), of its two groups
+/// of stories over that in the weakest motion, with standard errors: means of an hour by `replay`.
+constexpr double kEarthquakes[][4] = {
+    {0.901, 0.033, 0.946, 0.024}, {0.930, 0.036, 0.967, 0.028}, {0.871, 0.023, 0.919, 0.018},
+    {0.874, 0.034, 0.945, 0.025}, {0.890, 0.028, 0.976, 0.021}, {0.924, 0.023, 0.969, 0.020},
+    {0.821, 0.027, 0.888, 0.015}, {0.910, 0.031, 0.978, 0.022}, {0.863, 0.019, 0.920, 0.016},
+    {1.000, 0.047, 1.000, 0.020}, {0.913, 0.029, 1.000, 0.021}};
+
+TEST(Years, EarthquakesBetweenRaiseNothingAndHideNothing) {
+  constexpr int kEvery_d = 90;
+  const auto shaken = [](int day, Seen& seen) {
+    if (day % kEvery_d != 0) return;
+    const double* e = kEarthquakes[static_cast<std::size_t>(day / kEvery_d) % 11];
+    for (std::size_t s = 0; s < seen.values.size(); ++s) {
+      DayValue& v = seen.values[s];
+      const int group = s < 2 ? 0 : 2;  // the lower two stories
+      v.value *= e[group];
+      v.std_error = v.value * e[group + 1];
+    }
+  };
+  EXPECT_EQ(alarms(draws(8), shaken), 0);
+  const auto surer = [&](int day, Seen& seen) {  // as if a day were of the earthquake alone
+    shaken(day, seen);
+    if (day % kEvery_d == 0)
+      for (DayValue& v : seen.values) v.std_error = kNoise * v.value;
+  };
+  EXPECT_EQ(alarms(draws(8), surer), 0);
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const auto found = run(seed, kLossDay + 60, loss({5}, 0.05), surer);
+    ASSERT_EQ(found.size(), 1) << seed;
+    EXPECT_EQ(found[0].element, 5);
+    EXPECT_LE(found[0].found_day - kLossDay, 10);
+  }
+}
+
+TEST(Years, HalfOfTheValuesAndWrongOnesRaiseNothingAndHideNothing) {
+  const auto broken = [](unsigned seed) {
+    return [random = std::mt19937_64(seed)](int, Seen& seen) mutable {
+      const auto one_in = [&](unsigned n) { return random() % n == 0; };
+      for (DayValue& v : seen.values) {
+        if (one_in(2)) v = {kNaN, kNaN};
+        if (one_in(50)) v.value *= 10;
+        if (one_in(50)) v.value *= 0.01;
+        if (one_in(50)) v.value = -v.value;
+        if (one_in(50)) v.std_error *= 1e-3;
+      }
+      for (double& w : seen.weather)
+        if (one_in(2)) w = kNaN;
+    };
+  };
+  int wrong = 0;
+  for (unsigned seed = 0; seed < static_cast<unsigned>(draws(8)); ++seed)
+    wrong += run(seed, kThreeYears_d, {}, broken(seed)).empty() ? 0 : 1;
+  EXPECT_EQ(wrong, 0);
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const auto found = run(seed, kLossDay + 60, loss({5}, 0.05), broken(seed));
+    ASSERT_EQ(found.size(), 1) << seed;
+    EXPECT_EQ(found[0].element, 5);
+  }
 }
 
 TEST(Years, AKnownLossIsNotFoundAgainAndTheNextOneIs) {

@@ -116,6 +116,30 @@ TEST_F(HistoryLossesTest, NamesTheFrameTheDayAndTheSize) {
   EXPECT_EQ(json["elements"].size(), 5);  // no damping, and all alike
 }
 
+TEST_F(HistoryLossesTest, TellsAThermometerThatLies) {
+  constexpr int kLieDay = 300;
+  constexpr double kLie_degc = -12;
+  std::string weather = "time,outside_degc\n";
+  for (int day = 0; day < kDays; ++day)
+    weather += fmt::format("{},{:.2f}\n", utc_text(kFirst_us + day * kDay_us),
+                           degc(day) + (day < kLieDay ? 0 : kLie_degc));
+  const std::string said = "outside_degc probably reads too low since 2025-10-28, by 1";
+  const Ran text = run_with_weather(weather);
+  EXPECT_NE(text.out.find(said), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("kx_2_y1 -"), std::string::npos) << text.out;
+  HistoryArguments a;
+  a.weather = weather_path_;
+  a.json = true;
+  const auto wrong = nlohmann::json::parse(run(a).out)["wrong_sensor"];
+  EXPECT_EQ(wrong["covariate"], "outside_degc");
+  EXPECT_NEAR(wrong["reads_too_much"].get<double>(), kLie_degc,
+              4 * wrong["std_error"].get<double>());
+  a.json = false;
+  a.report = directory_.path("report.html");
+  (void)run(a);
+  EXPECT_NE(test::read_file(a.report).find(said), std::string::npos);
+}
+
 TEST_F(HistoryLossesTest, IsSilentBeforeTheLoss) {
   HistoryArguments a;
   a.weather = weather_path_;
