@@ -29,6 +29,8 @@ std::vector<std::string> problems(const SensorModel& m) {
   };
   require(std::isfinite(m.noise_density) && m.noise_density >= 0, "noise must be >= 0");
   require(std::isfinite(m.bias) && std::isfinite(m.thermal_ramp), "bias and ramp must be finite");
+  require(std::isfinite(m.bias_per_degc) && std::isfinite(m.gain_per_degc),
+          "errors per degC must be finite");
   require(std::isfinite(m.full_scale) && m.full_scale >= 0, "full scale must be >= 0");
   require(m.bits == 0 || (m.bits >= 2 && m.bits <= 32), "bits must be 0 or 2 to 32");
   require(m.bits == 0 || m.full_scale > 0, "bits need a full scale");
@@ -91,13 +93,16 @@ SensorArray::SensorArray(std::vector<SensorAxis> axes, std::vector<SensorModel> 
   }
 }
 
-const std::vector<double>& SensorArray::measure(double time_s, const Eigen::VectorXd& motion) {
+const std::vector<double>& SensorArray::measure(double time_s, const Eigen::VectorXd& motion,
+                                                double warmer_degc) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const SensorModel& m = models_[i];
     const double noise = m.noise_density * noise_gain_ * noise_[i].normal();
     const bool lost = loss_[i].uniform() < m.loss_ratio;
     const bool dead = time_s >= m.dead_from_s && time_s < m.dead_to_s;
-    double analog = motion[static_cast<Eigen::Index>(i)] + noise + m.bias + m.thermal_ramp * time_s;
+    const double gain = 1 + m.gain_per_degc * warmer_degc;
+    double analog = gain * motion[static_cast<Eigen::Index>(i)] + noise + m.bias +
+                    m.bias_per_degc * warmer_degc + m.thermal_ramp * time_s;
     if (m.clip_level > 0) analog = std::clamp(analog, -m.clip_level, m.clip_level);
     const double seen = quantised(analog, m);
     raw_[i] = lost || dead ? std::numeric_limits<double>::quiet_NaN()

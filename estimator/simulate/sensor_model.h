@@ -16,12 +16,14 @@
 
 namespace framewatch::estimator {
 
-/// The errors of one accelerometer axis, applied in this order: noise, bias and thermal ramp,
+/// The errors of one accelerometer axis, applied in this order: gain, noise, bias and thermal ramp,
 /// saturation, quantization, loss, inverse calibration. SI.
 struct SensorModel {
   double noise_density = 0;  ///< white, one-sided, m/s^2/sqrt(Hz)
   double bias = 0;           ///< m/s^2
   double thermal_ramp = 0;   ///< m/s^2 per s, added to the bias from time 0 on
+  double bias_per_degc = 0;  ///< m/s^2 per degC, added to the bias
+  double gain_per_degc = 0;  ///< relative, per degC
   double clip_level = 0;     ///< m/s^2: limit before the converter; 0: unlimited
   double full_scale = 0;     ///< m/s^2: values are limited to + and - this; 0: unlimited
   int bits = 0;              ///< of the converter over the full scale; 0: no quantization
@@ -50,8 +52,10 @@ class SensorArray {
               std::uint64_t seed);
 
   /// Returns the raw values of the next instant in axis order, NaN for lost samples; SensorAxis'
-  /// calibration turns them back into m/s^2. motion: sensed by every axis, m/s^2.
-  const std::vector<double>& measure(double time_s, const Eigen::VectorXd& motion);
+  /// calibration turns them back into m/s^2. motion: sensed by every axis, m/s^2. warmer_degc: than
+  /// at the calibration.
+  const std::vector<double>& measure(double time_s, const Eigen::VectorXd& motion,
+                                     double warmer_degc = 0);
 
  private:
   std::vector<SensorAxis> axes_;

@@ -33,74 +33,73 @@ LossEvidence::LossEvidence(const Eigen::VectorXd& prior, double life_d, double l
   const Eigen::Index n = prior.size() + 1;
   for (const double wander : kWander)
     for (const double wander_d : kWander_d) {
-      Candidate c{wander, wander_d, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n), 0,
-                  {},     {}};
-      c.covariance.diagonal().head(n - 1) = prior.array().square();
-      c.covariance(n - 1, n - 1) = wander * wander;
-      candidates_.push_back(std::move(c));
+      State state{Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
+      state.covariance.diagonal().head(n - 1) = prior.array().square();
+      state.covariance(n - 1, n - 1) = wander * wander;
+      candidates_.push_back({wander, wander_d, std::move(state), {}, {}});
     }
 }
 
-void LossEvidence::push(double day, const Eigen::VectorXd& regressors, double regressors_doubt,
-                        double value, double variance, const Eigen::MatrixXd& errors) {
+void LossEvidence::push(double day, const Weather& weather, double value, double variance,
+                        const std::vector<Weather>& suspected) {
   const double days = begun_ ? day - last_day_ : 0;
   begun_ = true;
   last_day_ = day;
-  for (Candidate& c : candidates_)
-    update(c, day, days, regressors, regressors_doubt, value, variance, errors);
+  for (Candidate& c : candidates_) {
+    update(c, day, days, weather, value, variance);
+    for (std::size_t i = 0; i < c.suspicions.size(); ++i)
+      (void)step(c, days, suspected[i], value, variance, c.suspicions[i]);
+  }
   judge();
   thin();
 }
 
-/// One step of Kalman's filter, and the effect that a unit step has on it.
-/// docs/equations.md (69).
-void LossEvidence::update(Candidate& c, double day, double days, const Eigen::VectorXd& regressors,
-                          double regressors_doubt, double value, double variance,
-                          const Eigen::MatrixXd& errors) {
-  const Eigen::Index w = regressors.size();
+/// One step of Kalman's filter.
+LossEvidence::Innovation LossEvidence::step(const Candidate& c, double days, const Weather& weather,
+                                            double value, double variance, State& state) {
+  const Eigen::Index w = weather.regressors.size();
   const double kept = std::exp(-days / c.wander_d);
-  c.mean[w] *= kept;
-  c.covariance.row(w) *= kept;
-  c.covariance.col(w) *= kept;
-  c.covariance(w, w) += c.wander * c.wander * (1 - kept * kept);
-  for (Bet& bet : c.bets) bet.effect[w] *= kept;
-  for (Suspicion& s : c.suspicions) s.effect[w] *= kept;
-  c.bets.push_back({day, c.log_likelihood, Eigen::VectorXd::Zero(w + 1), {}});
+  state.mean[w] *= kept;
+  state.covariance.row(w) *= kept;
+  state.covariance.col(w) *= kept;
+  state.covariance(w, w) += c.wander * c.wander * (1 - kept * kept);
 
   Eigen::VectorXd h(w + 1);
-  h << regressors, 1;
-  const Eigen::VectorXd gain = c.covariance * h;
-  const double coefficients =
-      c.mean.segment(1, w - 1).squaredNorm() + c.covariance.diagonal().segment(1, w - 1).sum();
-  const double noise = variance + regressors_doubt * regressors_doubt * coefficients;
-  const double off = value - h.dot(c.mean);
+  h << weather.regressors, 1;
+  const Eigen::VectorXd gain = state.covariance * h;
+  const double coefficients = state.mean.segment(1, w - 1).squaredNorm() +
+                              state.covariance.diagonal().segment(1, w - 1).sum();
+  const double noise = variance + weather.doubt * weather.doubt * coefficients;
+  const double off = value - h.dot(state.mean);
   double total = h.dot(gain) + noise;
   const double surprise = std::abs(off) / std::sqrt(total);
   if (surprise > kMostSurprise) total *= std::pow(surprise / kMostSurprise, 2);
-  c.log_likelihood -= 0.5 * (std::log(2 * M_PI * total) + off * off / total);
+  state.log_likelihood -= 0.5 * (std::log(2 * M_PI * total) + off * off / total);
+  state.mean += gain * (off / total);
+  state.covariance -= gain * gain.transpose() / total;
+  return {h, gain, off, total};
+}
+
+/// Takes a value, and what a unit step would have had of it. docs/equations.md (69).
+void LossEvidence::update(Candidate& c, double day, double days, const Weather& weather,
+                          double value, double variance) {
+  const Eigen::Index w = weather.regressors.size();
+  const double kept = std::exp(-days / c.wander_d);
+  for (Bet& bet : c.bets) bet.effect[w] *= kept;
+  c.bets.push_back({day, c.state.log_likelihood, Eigen::VectorXd::Zero(w + 1)});
+  const Innovation i = step(c, days, weather, value, variance, c.state);
   for (Bet& bet : c.bets) {
-    const double seen = 1 - h.dot(bet.effect);
-    bet.size.information += seen * seen / total;
-    bet.size.score += seen * off / total;
-    bet.effect += gain * (seen / total);
+    const double seen = 1 - i.h.dot(bet.effect);
+    bet.information += seen * seen / i.variance;
+    bet.score += seen * i.off / i.variance;
+    bet.effect += i.gain * (seen / i.variance);
   }
-  for (std::size_t i = 0; i < c.suspicions.size(); ++i) {
-    Suspicion& s = c.suspicions[i];
-    // Wrong regressors make the model expect a change that does not come.
-    const double felt =
-        -c.mean.head(w).dot(errors.col(static_cast<Eigen::Index>(i))) - h.dot(s.effect);
-    s.factor.information += felt * felt / total;
-    s.factor.score += felt * off / total;
-    s.effect += gain * (felt / total);
-  }
-  c.mean += gain * (off / total);
-  c.covariance -= gain * gain.transpose() / total;
 }
 
 /// Returns what a bet claims: the step's size, and the logarithm of its likelihood over that of the
 /// same candidate without it, averaged over the prior of the size.
 LossEvidence::Claim LossEvidence::claim_of(const Bet& bet) const {
-  const double a = bet.size.information, b = bet.size.score, usual = kUsualStep * kUsualStep;
+  const double a = bet.information, b = bet.score, usual = kUsualStep * kUsualStep;
   const double variance = 1 / (1 / usual + a), error = std::sqrt(variance);
   const double beyond = -(b + least_ * a);  // score of what exceeds the least step
   return {b * variance, error,
@@ -113,10 +112,10 @@ LossEvidence::Claim LossEvidence::claim_of(const Bet& bet) const {
 double LossEvidence::capital_of(std::size_t bet, double& largest) {
   double best = kNever, capital = 0;
   for (const Candidate& c : candidates_)
-    best = std::max(best, c.log_likelihood - c.bets[bet].log_likelihood_before);
+    best = std::max(best, c.state.log_likelihood - c.bets[bet].log_likelihood_before);
   for (const Candidate& c : candidates_) {
     const Claim claim = claim_of(c.bets[bet]);
-    const double since = c.log_likelihood - c.bets[bet].log_likelihood_before;
+    const double since = c.state.log_likelihood - c.bets[bet].log_likelihood_before;
     const double log = since - best + claim.log_ratio;
     capital += std::exp(std::min(log, kMostLog));
     if (log <= largest) continue;
@@ -152,8 +151,7 @@ void LossEvidence::thin() {
 }
 
 void LossEvidence::suspect() {
-  for (Candidate& c : candidates_)
-    c.suspicions.push_back({Eigen::VectorXd::Zero(c.mean.size()), {}});
+  for (Candidate& c : candidates_) c.suspicions.push_back(c.state);
 }
 
 void LossEvidence::drop_suspicion(std::size_t index) {
@@ -161,23 +159,26 @@ void LossEvidence::drop_suspicion(std::size_t index) {
     c.suspicions.erase(c.suspicions.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-LossEvidence::Likelihood LossEvidence::suspicion(std::size_t index) const {
-  return likeliest().suspicions[index].factor;
-}
-
-const LossEvidence::Candidate& LossEvidence::likeliest() const {
-  return *std::ranges::max_element(candidates_, {}, &Candidate::log_likelihood);
+double LossEvidence::suspicion(std::size_t index) const {
+  double with = kNever, without = kNever;
+  for (const Candidate& c : candidates_) {
+    with = std::max(with, c.suspicions[index].log_likelihood);
+    without = std::max(without, c.state.log_likelihood);
+  }
+  return with - without;
 }
 
 Eigen::VectorXd LossEvidence::coefficients() const {
-  const Candidate& c = likeliest();
-  return c.mean.head(c.mean.size() - 1);
+  const auto likeliest = std::ranges::max_element(
+      candidates_, {}, [](const Candidate& c) { return c.state.log_likelihood; });
+  return likeliest->state.mean.head(likeliest->state.mean.size() - 1);
 }
 
 void LossEvidence::accept(double std_error) {
   for (Candidate& c : candidates_) {
     c.bets.clear();
-    c.covariance(0, 0) += std_error * std_error;
+    c.state.covariance(0, 0) += std_error * std_error;
+    for (State& s : c.suspicions) s.covariance(0, 0) += std_error * std_error;
   }
   settled_ = 0;
   log_capital_ = kNever;

@@ -27,23 +27,22 @@ class LossEvidence {
   /// least: smaller steps are no loss.
   LossEvidence(const Eigen::VectorXd& prior, double life_d, double least);
 
-  /// Takes a value of a day later than the one before. variance: of its noise. regressors_doubt:
-  /// see WeatherLags::doubt(). errors: a column for each suspicion, by how much the regressors are
-  /// wrong today if it is right.
-  void push(double day, const Eigen::VectorXd& regressors, double regressors_doubt, double value,
-            double variance, const Eigen::MatrixXd& errors);
-
-  /// The logarithm of the likelihood of values with an effect of some size, over that without it,
-  /// is score * size - information * size^2 / 2.
-  struct Likelihood {
-    double information = 0, score = 0;
+  /// A day's regressors, and how far they may be off (WeatherLags::doubt()).
+  struct Weather {
+    Eigen::VectorXd regressors;
+    double doubt;
   };
-  /// Adds a suspicion that the regressors are wrong from the next day on, as the last one.
+  /// Takes a value of a day later than the one before. variance: of its noise. suspected: the
+  /// regressors of every suspicion.
+  void push(double day, const Weather& weather, double value, double variance,
+            const std::vector<Weather>& suspected);
+
+  /// Adds a suspicion, as the last one: the regressors are others from the next value on.
   void suspect();
   void drop_suspicion(std::size_t index);
-  /// Returns what the values say of a suspicion: of a factor of its errors, for the candidate that
-  /// is likeliest without it.
-  Likelihood suspicion(std::size_t index) const;
+  /// Returns the logarithm of the likelihood of the values with the regressors of a suspicion over
+  /// that with the ones that were read, both of their likeliest candidate.
+  double suspicion(std::size_t index) const;
   /// Returns the logarithm of the capital.
   double log_capital() const { return log_capital_; }
 
@@ -63,27 +62,32 @@ class LossEvidence {
  private:
   struct Bet {
     double day;
-    double log_likelihood_before;  ///< of its candidate, before that day
-    Eigen::VectorXd effect;        ///< of a unit step on the state's mean
-    Likelihood size;               ///< of the step
+    double log_likelihood_before;       ///< of its candidate, before that day
+    Eigen::VectorXd effect;             ///< of a unit step on the state's mean
+    double information = 0, score = 0;  ///< of the step's size
   };
-  struct Suspicion {
-    Eigen::VectorXd effect;  ///< of the errors on the state's mean
-    Likelihood factor;
+  /// The state of a Kalman filter: coefficients, then w.
+  struct State {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+    double log_likelihood = 0;
   };
   /// One candidate: w with this standard deviation and time constant.
   struct Candidate {
     double wander, wander_d;
-    Eigen::VectorXd mean;  ///< coefficients, w
-    Eigen::MatrixXd covariance;
-    double log_likelihood = 0;
+    State state;
     std::vector<Bet> bets;  ///< oldest first, alike in all candidates
-    std::vector<Suspicion> suspicions;
+    std::vector<State> suspicions;
   };
-  void update(Candidate& candidate, double day, double days, const Eigen::VectorXd& regressors,
-              double regressors_doubt, double value, double variance,
-              const Eigen::MatrixXd& errors);
-  const Candidate& likeliest() const;
+  /// What a value changed in a state: h is the row of the regressors and w.
+  struct Innovation {
+    Eigen::VectorXd h, gain;
+    double off, variance;
+  };
+  static Innovation step(const Candidate& candidate, double days, const Weather& weather,
+                         double value, double variance, State& state);
+  static void update(Candidate& candidate, double day, double days, const Weather& weather,
+                     double value, double variance);
   struct Claim {
     double size, std_error, log_ratio;
   };

@@ -23,8 +23,8 @@ class SensorSuspicions {
   /// readings, with this day. means: of the covariates.
   void push(double day, const WeatherLags& read, const std::vector<double>& means,
             std::vector<LossEvidence>& series);
-  /// Returns the errors of this day's regressors, a column for each suspicion.
-  const Eigen::MatrixXd& errors() const { return errors_; }
+  /// Returns this day's weather without the error of each suspicion.
+  const std::vector<LossEvidence::Weather>& weather() const { return weather_; }
   /// Weighs the suspicions by what the series have seen. Keeps the likeliest.
   void judge(std::vector<LossEvidence>& series);
   /// Returns the logarithm of how much likelier healthy elements are if sensors may be wrong.
@@ -46,11 +46,11 @@ class SensorSuspicions {
     double variance;    ///< of usual changes
     WeatherLags right;  ///< takes its means without that change
   };
-  double weigh(std::size_t index, const std::vector<LossEvidence>& series, Wrong& wrong) const;
+  double weigh(std::size_t index, const std::vector<LossEvidence>& series) const;
 
   std::vector<Covariate> covariates_;
   std::vector<Suspicion> suspicions_;
-  Eigen::MatrixXd errors_;
+  std::vector<LossEvidence::Weather> weather_;
   double excuse_ = 0;
   std::optional<Wrong> wrong_;
 };

@@ -158,8 +158,8 @@ std::optional<YearsWatch::Finding> YearsWatch::push(double day, const std::vecto
                                                     const std::vector<double>& weather) {
   weather_.push(day, weather);
   sensors_.push(day, weather_, weather, series_);
-  const double doubt = weather_.doubt();
-  if (!std::isfinite(doubt) || std::ranges::none_of(seen, is_value)) return std::nullopt;
+  const LossEvidence::Weather today{weather_.regressors(), weather_.doubt()};
+  if (!std::isfinite(today.doubt) || std::ranges::none_of(seen, is_value)) return std::nullopt;
   const double days = days_++ > 0 ? day - last_day_ : 0;
   last_day_ = day;
   std::vector<DayValue> values = seen;
@@ -172,11 +172,10 @@ std::optional<YearsWatch::Finding> YearsWatch::push(double day, const std::vecto
     const Element& e = elements_[p];
     if (!is_value(values[p])) continue;
     const double others = (sum - e.now) / (n - 1);
-    series_[p].push(day, weather_.regressors(), doubt, e.now - others,
-                    e.variance + (variance - e.variance) / ((n - 1) * (n - 1)), sensors_.errors());
+    series_[p].push(day, today, e.now - others,
+                    e.variance + (variance - e.variance) / ((n - 1) * (n - 1)), sensors_.weather());
   }
-  series_.back().push(day, weather_.regressors(), doubt, sum / n, variance / (n * n),
-                      sensors_.errors());
+  series_.back().push(day, today, sum / n, variance / (n * n), sensors_.weather());
   sensors_.judge(series_);
 
   const auto most = std::max_element(series_.begin(), series_.end(), [](auto& a, auto& b) {

@@ -35,7 +35,8 @@ constexpr double kStandardGravity = 9.80665;
 constexpr double kLongestDelay_s = 1;
 
 /// Replaces values of `model` by the given keys.
-void read_sensor(ConfigSection& s, estimator::SensorModel& model, double& noise_ratio) {
+void read_sensor(ConfigSection& s, bool has_climate, estimator::SensorModel& model,
+                 double& noise_ratio) {
   const auto take = [&](const char* key, double& value, double factor = 1) {
     if (s.given(key)) value = factor * s.number(key);
   };
@@ -43,12 +44,16 @@ void read_sensor(ConfigSection& s, estimator::SensorModel& model, double& noise_
   take("noise_ratio", noise_ratio);
   take("bias_mps2", model.bias);
   take("ramp_mps3", model.thermal_ramp);
+  take("bias_mps2_per_degc", model.bias_per_degc);
+  take("gain_per_degc", model.gain_per_degc);
   take("full_scale_g", model.full_scale, kStandardGravity);
   if (s.given("bits")) model.bits = s.integer("bits");
   take("loss_ratio", model.loss_ratio);
   take("dead_from_s", model.dead_from_s);
   take("dead_to_s", model.dead_to_s);
   for (const std::string& rule : problems(model)) s.problem("", rule);
+  for (const char* key : {"bias_mps2_per_degc", "gain_per_degc"})
+    if (s.given(key) && !has_climate) s.problem(key, "needs [climate], which has the temperature");
 }
 
 /// Returns only those errors of all sensors that have no unit of acceleration.
@@ -59,7 +64,8 @@ estimator::SensorModel of_force(const estimator::SensorModel& common) {
 }
 
 void refuse_acceleration(ConfigSection& s) {
-  for (const char* key : {"noise_mps2_per_rthz", "bias_mps2", "ramp_mps3", "full_scale_g", "bits"})
+  for (const char* key : {"noise_mps2_per_rthz", "bias_mps2", "ramp_mps3", "bias_mps2_per_degc",
+                          "gain_per_degc", "full_scale_g", "bits"})
     if (s.given(key))
       s.problem(key,
                 "is of an accelerometer; a channel of a force has noise_ratio, loss_ratio, "
@@ -73,7 +79,8 @@ void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& sin
   estimator::SensorModel common;
   double common_ratio = 0;
   ConfigSection section("sensors", "sensors", all, {1, 1}, problems);
-  read_sensor(section, common, common_ratio);
+  const bool has_climate = scenario.climate.has_value();
+  read_sensor(section, has_climate, common, common_ratio);
   // Empty if the building has problems; then its channels are unknown.
   const std::vector<estimator::SensorAxis>& axes = scenario.config.pipeline.axes;
   scenario.sensors.assign(axes.size(), common);
@@ -87,7 +94,7 @@ void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& sin
                                  [&](const estimator::SensorAxis& a) { return a.name == name; });
     if (at != axes.end()) {
       const auto index = static_cast<std::size_t>(at - axes.begin());
-      read_sensor(one, scenario.sensors[index], scenario.noise_ratio[index]);
+      read_sensor(one, has_climate, scenario.sensors[index], scenario.noise_ratio[index]);
       if (axes[index].is_force) refuse_acceleration(one);
       continue;
     }
@@ -95,7 +102,7 @@ void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& sin
       one.problem("channel", fmt::format("no channel is named \"{}\"", name));
     estimator::SensorModel nobody;
     double ratio = 0;
-    read_sensor(one, nobody, ratio);
+    read_sensor(one, has_climate, nobody, ratio);
   }
   for (const estimator::SensorAxis& axis : axes)
     if (std::abs(axis.delay) > kLongestDelay_s)

@@ -33,6 +33,25 @@ std::vector<estimator::ParameterChange> course_of(const Scenario& s) {
   return out;
 }
 
+/// Returns how much warmer than its mean the outside of a climate is, at the start of every hour.
+std::vector<double> warmer_by_hour(const Scenario& s) {
+  std::vector<double> out;
+  if (!s.climate) return out;
+  estimator::ClimateStream climate = climate_of(s);
+  const double hours = std::ceil(s.duration_s / estimator::ClimateStream::kStep_s);
+  while (static_cast<double>(out.size()) <= hours)
+    out.push_back(climate.next().outside_degc - s.climate->climate.mean_degc);
+  return out;
+}
+
+/// Returns values of the hours, interpolated; 0 without values.
+double at_hour(const std::vector<double>& values, double hour) {
+  if (values.empty()) return 0;
+  const auto from = std::min(static_cast<std::size_t>(hour), values.size() - 1);
+  const std::size_t to = std::min(from + 1, values.size() - 1);
+  return values[from] + (hour - static_cast<double>(from)) * (values[to] - values[from]);
+}
+
 estimator::ResponseStream response_of(const Scenario& s) {
   const estimator::Structure& structure = s.config.pipeline.structure;
   estimator::ResponseOptions options;
@@ -105,13 +124,16 @@ std::string size_problem(const Scenario& s) {
 Simulation::Simulation(const Scenario& s)
     : response_(response_of(s)),
       channel_effects_(s.effects),
-      sensors_(s.config.pipeline.axes, sensors_of(s), s.rate_hz, s.seed) {}
+      sensors_(s.config.pipeline.axes, sensors_of(s), s.rate_hz, s.seed),
+      warmer_degc_(warmer_by_hour(s)) {}
 
 const std::vector<double>& Simulation::next() {
   constexpr double kLargest_mps2 = 1e6;
   const Eigen::VectorXd& motion = response_.next();
   collapsed_ = !motion.allFinite() || motion.cwiseAbs().maxCoeff() > kLargest_mps2;
-  return sensors_.measure(response_.time_s(), channel_effects_.apply(response_.time_s(), motion));
+  const double time_s = response_.time_s();
+  return sensors_.measure(time_s, channel_effects_.apply(time_s, motion),
+                          at_hour(warmer_degc_, time_s / estimator::ClimateStream::kStep_s));
 }
 
 std::int64_t instants(const Scenario& s) {

@@ -55,6 +55,7 @@ class Simulation {
   estimator::ResponseStream response_;
   estimator::ChannelEffects channel_effects_;
   estimator::SensorArray sensors_;
+  std::vector<double> warmer_degc_;  ///< than the mean of the climate, by hour; empty: no climate
   bool collapsed_ = false;
 };
 

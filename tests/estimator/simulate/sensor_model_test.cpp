@@ -95,6 +95,19 @@ TEST(SensorModel, BiasAndRampAddUp) {
   EXPECT_NEAR(samples[1000][0], 0.06, 1e-12);
 }
 
+TEST(SensorModel, FollowsItsTemperature) {
+  constexpr double kWarmer_degc = 20;
+  Bench b;
+  b.models[0].bias_per_degc = 1e-3;
+  b.models[1].gain_per_degc = -2e-4;
+  SensorArray array(b.axes, b.models, 100, kSeed);
+  const Eigen::VectorXd motion = Eigen::VectorXd::Constant(std::ssize(b.axes), 2);
+  const auto raw = array.measure(0, motion, kWarmer_degc);
+  EXPECT_NEAR(raw[0], 2 + 1e-3 * kWarmer_degc, 1e-12);
+  EXPECT_NEAR(raw[1], 2 * (1 - 2e-4 * kWarmer_degc), 1e-12);
+  EXPECT_NEAR(array.measure(0, motion)[1], 2, 1e-12);
+}
+
 TEST(SensorModel, QuantisesAndSaturates) {
   Bench b;
   b.models[0] = {.full_scale = 20, .bits = 16};

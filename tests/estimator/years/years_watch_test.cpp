@@ -311,13 +311,13 @@ TEST(Years, EarthquakesBetweenRaiseNothingAndHideNothing) {
       v.std_error = v.value * e[group + 1];
     }
   };
-  EXPECT_EQ(alarms(draws(8), shaken), 0);
+  EXPECT_EQ(alarms(draws(4), shaken), 0);
   const auto surer = [&](int day, Seen& seen) {  // as if a day were of the earthquake alone
     shaken(day, seen);
     if (day % kEvery_d == 0)
       for (DayValue& v : seen.values) v.std_error = kNoise * v.value;
   };
-  EXPECT_EQ(alarms(draws(8), surer), 0);
+  EXPECT_EQ(alarms(draws(4), surer), 0);
   for (unsigned seed = 0; seed < 4; ++seed) {
     const auto found = run(seed, kLossDay + 60, loss({5}, 0.05), surer);
     ASSERT_EQ(found.size(), 1) << seed;
@@ -346,7 +346,7 @@ TEST(Years, HalfOfTheValuesAndWrongOnesRaiseNothingAndHideNothing) {
     wrong += run(seed, kThreeYears_d, {}, broken(seed)).empty() ? 0 : 1;
   EXPECT_EQ(wrong, 0);
   for (unsigned seed = 0; seed < 4; ++seed) {
-    const auto found = run(seed, kLossDay + 60, loss({5}, 0.05), broken(seed));
+    const auto found = run(seed, kLossDay + 200, loss({5}, 0.05), broken(seed));
     ASSERT_EQ(found.size(), 1) << seed;
     EXPECT_EQ(found[0].element, 5);
   }

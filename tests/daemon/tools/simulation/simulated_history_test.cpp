@@ -142,6 +142,9 @@ TEST_F(SimulatedHistory, MotionToo) {
   const std::size_t roof = same.config.pipeline.axes.size() - 1;
   EXPECT_EQ(peak(*cold, roof), peak(same, roof));
   EXPECT_NE(peak(*cold, roof), peak(*mild, roof));
+  EXPECT_FALSE(read("[sensors]\ngain_per_degc = 1e-4\n"));
+  ASSERT_FALSE(problems.empty());
+  EXPECT_NE(problems.back().message.find("needs [climate]"), std::string::npos);
 }
 
 }  // namespace simulated_history_test

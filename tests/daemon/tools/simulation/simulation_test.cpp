@@ -60,6 +60,22 @@ TEST(Simulation, TheSameSeedGivesTheSameBytes) {
   EXPECT_NE(test::read_file(directory.path("a.csv")), test::read_file(directory.path("c.csv")));
 }
 
+TEST(Simulation, SensorsFollowTheTemperatureOfTheClimate) {
+  constexpr double kBiasPerDegc = 1e-3;
+  Scenario s = small_scenario();
+  s.climate.emplace();
+  s.climate->climate.mean_degc = 50;  // midnight of a first of January is far colder
+  for (estimator::SensorModel& m : s.sensors) m = {};
+  Simulation right(s);
+  s.sensors[3].bias_per_degc = kBiasPerDegc;
+  Simulation cold(s);
+  estimator::ClimateStream climate = climate_of(s);
+  const double colder_degc = climate.next().outside_degc - 50;
+  EXPECT_LT(colder_degc, -5);
+  const double bias = cold.next()[3] - right.next()[3];
+  EXPECT_NEAR(bias, kBiasPerDegc * colder_degc, 1e-9);
+}
+
 TEST(Simulation, TheLogHoldsEverySampleInOrder) {
   const test::TemporaryDirectory directory;
   const Scenario s = small_scenario();
