@@ -136,7 +136,6 @@ class Diagnoser {
     if (!in_time_or_told("models with masses, gains and clocks as declared",
                          [&] { set_models(now.model); }))
       out_.model = out_.declared = now.model;
-    mark_approximate(fitter_, out_);
     (void)in_time_or_told("errors of the values", [&] {
       set_errors(fitter_, out_.model, now.motion, out_.effects);
       set_errors(fitter_, out_.model, now.motion, out_.known);
@@ -146,6 +145,7 @@ class Diagnoser {
     if (!in_time_or_told("models of the training records alone",
                          [&] { set_gaps(fitter_, options_, out_); }))
       set_gaps_of_all(fitter_, options_.holdout_from, out_);
+    mark_approximate(fitter_, out_);
     if (ramps.empty() && withdraw_worse(options_.holdout_from, out_) &&
         !in_time(1, [&] { set_models(out_.linear); }))
       out_.model = out_.declared = out_.linear;

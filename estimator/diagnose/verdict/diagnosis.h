@@ -76,6 +76,8 @@ struct Diagnosis {
   std::vector<LeadingLaw> leading;           ///< if no effect was named, best first
   double ratio_before = 0, ratio_after = 0;  ///< misfit over its expectation
   double noise_corner_hz = 0;                ///< RecordSegment::corner_hz; 0: the noise is white
+  /// That corner is what makes the residual at one place look like noise.
+  bool noise_by_place = false;
   Evidence evidence;
 };
 

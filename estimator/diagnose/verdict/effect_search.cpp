@@ -129,8 +129,9 @@ void EffectSearch::run(FitResult& now) {
   if (out_.effects.empty()) search_with_free_damping(now);
   begin_part(SearchPart::rivals);
   if (more) replace_laws(now);
-  if (by_place_) doubt_all();
+  out_.noise_by_place = by_place_;
   if (!out_.effects.empty()) return;
+  out_.noise_by_place = false;
   set_corner(corner_hz, segments_);
   now = linear;
   set_linear(now);

@@ -252,9 +252,22 @@ bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
   return true;
 }
 
+namespace {
+
+/// Returns the largest gap of a record over its floor.
+double worst_gap(const std::vector<Gap>& gaps) {
+  double out = 0;
+  for (const Gap& g : gaps) out = std::max(out, g.overall / std::max(g.overall_floor, 1e-12));
+  return out;
+}
+
+}  // namespace
+
 void mark_approximate(const Fitter& fitter, Diagnosis& out) {
-  if (out.ratio_after < 1 + chance_of(fitter, out.model)) return;
+  const bool misfits = out.noise_by_place || out.ratio_after >= 1 + chance_of(fitter, out.model);
+  if (!misfits || worst_gap(out.after) < kAtFloor) return;
   for (FoundEffect& e : out.effects) {
+    if (!e.ramp_mps3.empty()) continue;
     e.approximate = true;
     e.confidence = std::min(e.confidence, kDoubtful);
   }
@@ -271,17 +284,14 @@ const char* grade_word(Grade grade) {
 }
 
 void judge(const Fitter& fitter, Diagnosis& out) {
-  double worst = 0, gap = 0, floor = 0, before = 0;
+  double gap = 0, floor = 0;
   for (const Gap& g : out.after) {
-    worst = std::max(worst, g.overall / std::max(g.overall_floor, 1e-12));
     gap += g.overall;
     floor += g.overall_floor;
   }
-  for (const Gap& g : out.before)
-    before = std::max(before, g.overall / std::max(g.overall_floor, 1e-12));
-  const bool fits = out.ratio_after < kAdequate || worst < kAtFloor;
+  const bool fits = out.ratio_after < kAdequate || worst_gap(out.after) < kAtFloor;
   if (out.effects.empty()) {
-    const bool adequate = fits && (before < kAdequateGap || out.rejected.empty());
+    const bool adequate = fits && (worst_gap(out.before) < kAdequateGap || out.rejected.empty());
     out.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
     if (!adequate && out.reason.empty() && fits_separately(fitter, out.linear, out.ratio_before))
       out.reason =

@@ -18,7 +18,9 @@ constexpr double kAdequate = 1.25;
 /// linear: the model of all segments.
 bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_before);
 
-/// Marks the effects as approximate if more than noise is left, beyond chance.
+/// Marks the effects as approximate, and doubts them, if more than noise is left: a misfit beyond
+/// chance, and in one record a gap above its floor. A law whose computed force is off by a
+/// thousandth leaves such a misfit in strong motion, but no gap. Needs Diagnosis::after.
 void mark_approximate(const Fitter& fitter, Diagnosis& out);
 
 /// Returns the model without the effects from `first` on.

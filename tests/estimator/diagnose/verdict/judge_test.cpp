@@ -131,6 +131,38 @@ TEST(Judge, AnApproximateLinearEffectExplainsOnlyPart) {
   EXPECT_EQ(judged(d), Verdict::explained);
 }
 
+TEST(Judge, DoubtsANameOnlyIfMisfitAndGapBothLeaveSomething) {
+  const Recorded recorded({test::Small().record({}, 1)});
+  const FitResult fit = recorded.linear();
+  struct Left {
+    const char* what;
+    double ratio, gap;
+    bool by_place, doubted;
+  };
+  const Left all[] = {
+      {"only noise", 1, 1, false, false},
+      {"a misfit in strong motion", 1.5, kAtFloor - kNear, false, false},
+      {"a gap that the misfit does not see", 1, kAtFloor + kNear, false, false},
+      {"both", 1.5, kAtFloor + kNear, false, true},
+      {"noise that was estimated at one place, and a gap", 1, kAtFloor + kNear, true, true},
+      {"such noise at the floor", 1, kAtFloor - kNear, true, false},
+  };
+  for (const Left& l : all) {
+    Diagnosis d;
+    d.model = fit.model;
+    d.ratio_after = l.ratio;
+    d.noise_by_place = l.by_place;
+    d.after = {gap_with(1), gap_with(l.gap)};
+    d.effects.resize(2);
+    for (FoundEffect& e : d.effects) e.confidence = 0.99;
+    d.effects[0].ramp_mps3 = {1e-3};
+    mark_approximate(recorded.fitter, d);
+    EXPECT_EQ(d.effects[1].approximate, l.doubted) << l.what;
+    EXPECT_EQ(d.effects[1].confidence, l.doubted ? kDoubtful : 0.99) << l.what;
+    EXPECT_FALSE(d.effects[0].approximate) << "a ramp is subtracted as it was measured";
+  }
+}
+
 TEST(Judge, AnArbitraryForceExplainsNothing) {
   Diagnosis d;
   d.ratio_before = 101;
