@@ -79,7 +79,7 @@ class LossEvidence {
     std::vector<Bet> bets;  ///< oldest first, alike in all candidates
     std::vector<State> suspicions;
   };
-  /// What a value changed in a state: h is the row of the regressors and w.
+  /// One value's step of a state. h: the row of the regressors and w.
   struct Innovation {
     Eigen::VectorXd h, gain;
     double off, variance;
