@@ -87,10 +87,10 @@ std::string wrong_sensor_sentence(const HistoryLosses& l) {
   if (!l.wrong_sensor) return "";
   const estimator::SensorSuspicions::Wrong& w = *l.wrong_sensor;
   const std::string& name = l.covariates[w.covariate];
-  return fmt::format("{} probably reads too {} since {}, by {}: what this explains does not count as a loss",
-                     name, w.size < 0 ? "low" : "high",
-                     day_text(static_cast<std::int64_t>(w.since_day)),
-                     with_error(std::abs(w.size), w.std_error));
+  return fmt::format(
+      "{} probably reads too {} since {}, by {}: what this explains does not count as a loss", name,
+      w.size < 0 ? "low" : "high", day_text(static_cast<std::int64_t>(w.since_day)),
+      with_error(std::abs(w.size), w.std_error));
 }
 
 std::string probability_text(double probability) {
