@@ -77,18 +77,17 @@ LossEvidence::Innovation LossEvidence::step(const Candidate& c, double days, con
   state.log_likelihood -= 0.5 * (std::log(2 * M_PI * total) + off * off / total);
   state.mean += gain * (off / total);
   state.covariance -= gain * gain.transpose() / total;
-  return {h, gain, off, total};
+  return {h, gain, off, total, kept};
 }
 
 /// Takes a value, and what a unit step would have had of it. docs/equations.md (69).
 void LossEvidence::update(Candidate& c, double day, double days, const Weather& weather,
                           double value, double variance) {
   const Eigen::Index w = weather.regressors.size();
-  const double kept = std::exp(-days / c.wander_d);
-  for (Bet& bet : c.bets) bet.effect[w] *= kept;
   c.bets.push_back({day, c.state.log_likelihood, Eigen::VectorXd::Zero(w + 1)});
   const Innovation i = step(c, days, weather, value, variance, c.state);
   for (Bet& bet : c.bets) {
+    bet.effect[w] *= i.kept;
     const double seen = 1 - i.h.dot(bet.effect);
     bet.information += seen * seen / i.variance;
     bet.score += seen * i.off / i.variance;

@@ -79,10 +79,11 @@ class LossEvidence {
     std::vector<Bet> bets;  ///< oldest first, alike in all candidates
     std::vector<State> suspicions;
   };
-  /// One value's step of a state. h: the row of the regressors and w.
+  /// One value's step of a state. h: the row of the regressors and w; kept: share of w that was
+  /// left since the value before.
   struct Innovation {
     Eigen::VectorXd h, gain;
-    double off, variance;
+    double off, variance, kept;
   };
   static Innovation step(const Candidate& candidate, double days, const Weather& weather,
                          double value, double variance, State& state);

@@ -129,9 +129,8 @@ void EffectSearch::run(FitResult& now) {
   if (out_.effects.empty()) search_with_free_damping(now);
   begin_part(SearchPart::rivals);
   if (more) replace_laws(now);
-  out_.noise_by_place = by_place_;
+  out_.noise_by_place = by_place_ && !out_.effects.empty();
   if (!out_.effects.empty()) return;
-  out_.noise_by_place = false;
   set_corner(corner_hz, segments_);
   now = linear;
   set_linear(now);
