@@ -2,7 +2,6 @@
 #include "daemon/tools/simulation/simulated_history.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -81,11 +80,6 @@ std::string problem_of(const Scenario& s, const std::string& directory) {
 }
 
 }  // namespace
-
-std::int64_t hours(const Scenario& s) {
-  return std::max<std::int64_t>(
-      static_cast<std::int64_t>(std::ceil(s.duration_s / estimator::ClimateStream::kStep_s)), 1);
-}
 
 std::string write_simulated_history(const Scenario& s, const std::string& directory,
                                     const std::string& weather_path,

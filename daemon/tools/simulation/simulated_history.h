@@ -18,7 +18,4 @@ std::string write_simulated_history(const Scenario& scenario, const std::string&
                                     const std::string& weather_path,
                                     const std::function<void(std::int64_t done)>& step);
 
-/// Returns the number of hours in a scenario's duration, at least 1.
-std::int64_t hours(const Scenario& scenario);
-
 }  // namespace framewatch::daemon

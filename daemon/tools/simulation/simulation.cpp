@@ -38,8 +38,7 @@ std::vector<double> warmer_by_hour(const Scenario& s) {
   std::vector<double> out;
   if (!s.climate) return out;
   estimator::ClimateStream climate = climate_of(s);
-  const double hours = std::ceil(s.duration_s / estimator::ClimateStream::kStep_s);
-  while (static_cast<double>(out.size()) <= hours)
+  for (std::int64_t hour = 0; hour <= hours(s); ++hour)
     out.push_back(climate.next().outside_degc - s.climate->climate.mean_degc);
   return out;
 }
@@ -134,6 +133,11 @@ const std::vector<double>& Simulation::next() {
   const double time_s = response_.time_s();
   return sensors_.measure(time_s, channel_effects_.apply(time_s, motion),
                           at_hour(warmer_degc_, time_s / estimator::ClimateStream::kStep_s));
+}
+
+std::int64_t hours(const Scenario& s) {
+  return std::max<std::int64_t>(
+      static_cast<std::int64_t>(std::ceil(s.duration_s / estimator::ClimateStream::kStep_s)), 1);
 }
 
 std::int64_t instants(const Scenario& s) {

@@ -69,6 +69,9 @@ estimator::ClimateStream climate_of(const Scenario& scenario);
 /// Returns the number of instants in the scenario's duration, both ends included.
 std::int64_t instants(const Scenario& scenario);
 
+/// Returns the number of hours in a scenario's duration, at least 1.
+std::int64_t hours(const Scenario& scenario);
+
 /// Returns why a scenario is too long or its building too large to simulate, or an empty text.
 /// Checks before allocating anything that large.
 std::string size_problem(const Scenario& scenario);
