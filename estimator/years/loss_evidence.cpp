@@ -173,12 +173,24 @@ Eigen::VectorXd LossEvidence::coefficients() const {
   return likeliest->state.mean.head(likeliest->state.mean.size() - 1);
 }
 
+void LossEvidence::adopt(std::size_t index) {
+  for (Candidate& c : candidates_) {
+    c.state = c.suspicions[index];
+    c.suspicions.clear();
+  }
+  clear_bets();
+}
+
 void LossEvidence::accept(double std_error) {
   for (Candidate& c : candidates_) {
-    c.bets.clear();
     c.state.covariance(0, 0) += std_error * std_error;
     for (State& s : c.suspicions) s.covariance(0, 0) += std_error * std_error;
   }
+  clear_bets();
+}
+
+void LossEvidence::clear_bets() {
+  for (Candidate& c : candidates_) c.bets.clear();
   settled_ = 0;
   log_capital_ = kNever;
   step_ = {};

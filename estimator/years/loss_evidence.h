@@ -43,6 +43,8 @@ class LossEvidence {
   /// Returns the logarithm of the likelihood of the values with the regressors of a suspicion over
   /// that with the ones that were read, both of their likeliest candidate.
   double suspicion(std::size_t index) const;
+  /// Takes a suspicion as known: goes on with its filters, without the others, and clears all bets.
+  void adopt(std::size_t index);
   /// Returns the logarithm of the capital.
   double log_capital() const { return log_capital_; }
 
@@ -94,6 +96,7 @@ class LossEvidence {
   };
   Claim claim_of(const Bet& bet) const;
   double capital_of(std::size_t bet, double& largest);
+  void clear_bets();
   void judge();
   void thin();
 

@@ -14,6 +14,11 @@ constexpr double kProbable = 0.95;
 
 }  // namespace
 
+std::vector<double> SensorSuspicions::correct(std::vector<double> readings) const {
+  for (std::size_t c = 0; c < readings.size(); ++c) readings[c] -= errors_[c].size;
+  return readings;
+}
+
 void SensorSuspicions::push(double day, const WeatherLags& read, const std::vector<double>& means,
                             std::vector<LossEvidence>& series) {
   if (suspicions_.size() > kKept) judge(series);  // no series had a value since
@@ -50,25 +55,64 @@ double SensorSuspicions::weigh(std::size_t index, const std::vector<LossEvidence
 void SensorSuspicions::judge(std::vector<LossEvidence>& series) {
   std::vector<double> weights;
   double all = 1, largest = 0;
-  wrong_.reset();
+  likeliest_.reset();
   for (std::size_t i = 0; i < suspicions_.size(); ++i) {
     weights.push_back(weigh(i, series));
     const double odds = std::exp(std::min(weights.back(), 300.0));
     all += odds;
     if (odds <= largest) continue;
     largest = odds;
-    const Suspicion& s = suspicions_[i];
-    wrong_ = Wrong{s.covariate, s.day, s.size, std::sqrt(s.variance)};
+    likeliest_ = i;
+    log_odds_ = weights.back();
   }
   excuse_ = std::log(all);
-  if (largest < kProbable * all) wrong_.reset();
+  if (largest < kProbable * all) likeliest_.reset();
   while (suspicions_.size() > kKept) {
     const auto least = static_cast<std::size_t>(std::min_element(weights.begin(), weights.end()) -
                                                 weights.begin());
     weights.erase(weights.begin() + static_cast<std::ptrdiff_t>(least));
+    if (likeliest_ && *likeliest_ > least) --*likeliest_;
     suspicions_.erase(suspicions_.begin() + static_cast<std::ptrdiff_t>(least));
     for (LossEvidence& s : series) s.drop_suspicion(least);
   }
+}
+
+void SensorSuspicions::adopt(WeatherLags& read, std::vector<LossEvidence>& series) {
+  if (!likeliest_) return;
+  double rival = 0;  // healthy elements and right sensors, or the likeliest loss
+  for (const LossEvidence& s : series) rival = std::max(rival, s.log_capital());
+  if (log_odds_ < proof_ + rival) return;
+  read = suspicions_[*likeliest_].right;
+  errors_ = with_likeliest();
+  for (LossEvidence& s : series) s.adopt(*likeliest_);
+  suspicions_.clear();
+  weather_.clear();
+  likeliest_.reset();
+  excuse_ = 0;
+}
+
+/// Returns the proven errors with the one of the likeliest suspicion.
+std::vector<SensorSuspicions::Error> SensorSuspicions::with_likeliest() const {
+  std::vector<Error> out = errors_;
+  if (!likeliest_) return out;
+  const Suspicion& s = suspicions_[*likeliest_];
+  Error& error = out[s.covariate];
+  error = {s.day, error.size + s.size, error.variance + s.variance};
+  return out;
+}
+
+std::optional<SensorSuspicions::Wrong> SensorSuspicions::wrong() const {
+  std::optional<Wrong> out;
+  double furthest = 0;
+  const std::vector<Error> errors = with_likeliest();
+  for (std::size_t c = 0; c < errors.size(); ++c) {
+    const Error& e = errors[c];
+    const double off = std::abs(e.size) / covariates_[c].scale;
+    if (e.size * e.size <= e.variance || off <= furthest) continue;  // none, or mended
+    furthest = off;
+    out = Wrong{c, e.since_day, e.size, std::sqrt(e.variance)};
+  }
+  return out;
 }
 
 }  // namespace framewatch::estimator

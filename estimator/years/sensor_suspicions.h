@@ -14,19 +14,28 @@ namespace framewatch::estimator {
 
 /// Suspects sensors of weather. One may be wrong for good from a day on which its readings changed:
 /// somebody moved it, or it broke. Then healthy elements seem to lose stiffness, because the
-/// weather was another. docs/equations.md, years.
+/// weather was another. An error that is proven is subtracted from later readings.
+/// docs/equations.md, years.
 class SensorSuspicions {
  public:
-  explicit SensorSuspicions(const std::vector<Covariate>& covariates) : covariates_(covariates) {}
+  /// proof: logarithm of the odds that prove an error.
+  SensorSuspicions(const std::vector<Covariate>& covariates, double proof)
+      : covariates_(covariates), proof_(proof), errors_(covariates.size()) {}
 
-  /// Takes a day's weather, before the series take their values. read: the regressors of the
-  /// readings, with this day. means: of the covariates.
+  /// Returns readings, by covariate, without the errors that are proven.
+  std::vector<double> correct(std::vector<double> readings) const;
+
+  /// Takes a day's weather, before the series take their values. read: its regressors, with this
+  /// day. means: of the covariates, as correct() returns them.
   void push(double day, const WeatherLags& read, const std::vector<double>& means,
             std::vector<LossEvidence>& series);
   /// Returns this day's weather without the error of each suspicion.
   const std::vector<LossEvidence::Weather>& weather() const { return weather_; }
   /// Weighs the suspicions by what the series have seen. Keeps the likeliest.
   void judge(std::vector<LossEvidence>& series);
+  /// Takes a suspicion as known if it is proven against right sensors and against every loss: the
+  /// series and `read` go on without its error, and there are no others. Call it after judge().
+  void adopt(WeatherLags& read, std::vector<LossEvidence>& series);
   /// Returns the logarithm of how much likelier healthy elements are if sensors may be wrong.
   double excuse() const { return excuse_; }
 
@@ -35,8 +44,8 @@ class SensorSuspicions {
     double since_day;
     double size, std_error;  ///< of what it reads too much, in the covariate's unit
   };
-  /// Returns the sensor that is probably wrong, if any.
-  std::optional<Wrong> wrong() const { return wrong_; }
+  /// Returns the sensor that is probably wrong, if any: the one that is furthest off.
+  std::optional<Wrong> wrong() const;
 
  private:
   struct Suspicion {
@@ -46,13 +55,21 @@ class SensorSuspicions {
     double variance;    ///< of usual changes
     WeatherLags right;  ///< takes its means without that change
   };
+  /// What a sensor reads too much.
+  struct Error {
+    double since_day = 0, size = 0, variance = 0;
+  };
   double weigh(std::size_t index, const std::vector<LossEvidence>& series) const;
+  std::vector<Error> with_likeliest() const;
 
   std::vector<Covariate> covariates_;
+  double proof_;
+  std::vector<Error> errors_;  ///< proven, by covariate
   std::vector<Suspicion> suspicions_;
   std::vector<LossEvidence::Weather> weather_;
   double excuse_ = 0;
-  std::optional<Wrong> wrong_;
+  std::optional<std::size_t> likeliest_;  ///< the suspicion that is probably true, if any
+  double log_odds_ = 0;                   ///< of that one
 };
 
 }  // namespace framewatch::estimator

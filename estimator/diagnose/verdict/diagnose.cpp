@@ -143,8 +143,10 @@ class Diagnoser {
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
     progress_.begin("gaps", 0.9, 1);
     if (!in_time_or_told("models of the training records alone",
-                         [&] { set_gaps(fitter_, options_, out_); }))
+                         [&] { set_gaps(fitter_, options_, out_); })) {
       set_gaps_of_all(fitter_, options_.holdout_from, out_);
+      search_.doubt_all();  // no record that the model has not seen speaks for them
+    }
     mark_approximate(fitter_, out_);
     if (ramps.empty() && withdraw_worse(options_.holdout_from, out_) &&
         !in_time(1, [&] { set_models(out_.linear); }))

@@ -126,6 +126,7 @@ TEST_F(HistoryLossesTest, TellsAThermometerThatLies) {
   const std::string said = "outside_degc probably reads too low since 2025-10-28, by 1";
   const Ran text = run_with_weather(weather);
   EXPECT_NE(text.out.find(said), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("kx_2_y1 -"), std::string::npos) << text.out;
   HistoryArguments a;
   a.weather = weather_path_;
   a.json = true;
