@@ -44,6 +44,7 @@ struct ChannelData {
 /// pieces.
 struct PeriodData {
   std::int64_t start_us = 0;
+  bool whole = false;  ///< no other piece of the period comes
   /// The newest window ended at last_us. 0 windows with parameters: late values of windows that an
   /// earlier piece counted without a value.
   std::int64_t windows = 0, last_us = INT64_MIN;

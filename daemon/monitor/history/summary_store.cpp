@@ -165,6 +165,8 @@ bool SummaryStore::add_period(const PeriodData& data, Grown& grown) {
   SqliteStatement values = file_.prepare(
       "INSERT OR REPLACE INTO open_values (parameter, start_us, box) VALUES (?, ?, ?)");
   SqliteStatement put = file_.prepare(kPutSummary);
+  // Other pieces and longer periods need the values again.
+  const bool keeps = !data.whole || settings_.summary_s.size() > 1;
   for (std::size_t p = 0; p < parameter_ids_.size(); ++p) {
     ParameterData d = data.parameters[p];
     std::vector<double> box;
@@ -182,13 +184,17 @@ bool SummaryStore::add_period(const PeriodData& data, Grown& grown) {
     }
     before.again();
     box.insert(box.end(), d.box.begin(), d.box.end());
-    values.bind(1, parameter_ids_[p]).bind(2, data.start_us).bind(3, std::span<const double>(box));
+    if (keeps) {
+      values.bind(1, parameter_ids_[p]).bind(2, data.start_us);
+      values.bind(3, std::span<const double>(box));
+      if (!values.run()) return false;
+    }
     const auto n = static_cast<double>(d.observable);
     put.bind(1, parameter_ids_[p]).bind(2, period_s).bind(3, data.start_us);
     bind_summary(put, 4, d.observable, n > 0 ? d.sum / n : estimator::kNaN,
                  n > 0 ? std::sqrt(d.error_squares / n) : estimator::kNaN,
                  n > 0 ? d.min : estimator::kNaN, n > 0 ? d.max : estimator::kNaN, box);
-    if (!values.run() || !put.run()) return false;
+    if (!put.run()) return false;
   }
   for (std::size_t i = 1; i < settings_.summary_s.size(); ++i)
     grown.emplace(settings_.summary_s[i], start_of(data.start_us, settings_.summary_s[i]));

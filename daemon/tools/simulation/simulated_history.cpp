@@ -32,6 +32,7 @@ PeriodData windows_of(std::int64_t start_us, const Scenario& s, const Eigen::Vec
                       int elements, estimator::Random& random) {
   PeriodData out;
   out.start_us = start_us;
+  out.whole = true;
   out.windows = kWindowsOfHour;
   out.last_us = start_us + kSecond_us;
   out.parameters.resize(static_cast<std::size_t>(truth.size()));
