@@ -13,7 +13,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/sqlite_file.h"
 #include "daemon/monitor/history/history_command.h"
+#include "daemon/monitor/history/history_files.h"
 #include "daemon/tools/simulation/scenario.h"
 #include "daemon/tools/simulation/simulate_command.h"
 #include "daemon/tools/simulation/simulation.h"
@@ -85,6 +87,38 @@ TEST_F(SimulatedHistory, AHealthyBuildingLosesNothing) {
   EXPECT_EQ(std::count(weather.begin(), weather.end(), '\n'), 1 + 100 * 24);
   EXPECT_TRUE(weather.starts_with(
       "time,outside_degc,humidity_pct,wind_mps,occupied_pct\n2026-01-01T00:00:00Z,"));
+}
+
+/// Returns the summaries of hours in a history, as text.
+std::string hours_in(const std::string& folder) {
+  SqliteFile file;
+  EXPECT_TRUE(file.open_to_read(summary_file(folder)));
+  SqliteStatement all = file.prepare(
+      "SELECT parameter, start_us, observable, mean, std_error, min, q1, median, q3, max"
+      " FROM summary WHERE period_s = 3600 ORDER BY parameter, start_us");
+  std::string out;
+  while (all.row()) {
+    out += fmt::format("{} {} {}", all.integer(0), all.integer(1), all.integer(2));
+    for (int column = 3; column < 10; ++column) out += fmt::format(" {}", all.number(column));
+    out += "\n";
+  }
+  return out;
+}
+
+TEST_F(SimulatedHistory, HoursAreTheSameBesideSummariesOfDays) {
+  const std::string building =
+      test::read_file(std::string(FRAMEWATCH_SOURCE_DIR) + "/configs/table_two_story.toml");
+  for (const char* lengths : {"60, 3600", "60, 3600, 86400"}) {
+    test::write_file(
+        directory_.path("b.toml"),
+        building + fmt::format("\n[history]\ndirectory = \"none\"\nsummary_s = [{}]\n", lengths));
+    const std::string text =
+        fmt::format("config = \"b.toml\"\nduration_s = {}\nseed = 3\n[climate]\n", 10 * kDay_s);
+    ASSERT_EQ(simulate_into(lengths, text), 0) << problems_;
+  }
+  const std::string alone = hours_in(directory_.path("60, 3600"));
+  EXPECT_GT(std::count(alone.begin(), alone.end(), '\n'), 10 * 24);
+  EXPECT_EQ(alone, hours_in(directory_.path("60, 3600, 86400")));
 }
 
 TEST_F(SimulatedHistory, TheSameScenarioGivesTheSameWeather) {
