@@ -30,7 +30,8 @@ constexpr double kWithOneMore = 0.95;  ///< largest gap with one more: a tenth o
 constexpr double kNearly = 1.1;    ///< gap over the best's, below which a set does nearly as well
 constexpr double kMinShare = 0.1;  ///< of the design, of a start's stiffness or damping
 constexpr double kLittle = 0.1;    ///< of the size that an effect has in its trial
-constexpr int kScreenSteps = 4, kJointSteps = 5, kNoneSteps = 8;
+/// Steps of every start; of the better half of the sets, from their best start; of the others.
+constexpr int kStartSteps = 1, kScreenSteps = 3, kJointSteps = 5, kNoneSteps = 8;
 
 struct CauseSet {
   Members members;
@@ -229,8 +230,8 @@ class Selection {
     return out;
   }
 
-  /// Returns sets with one more cause than the given ones, best first. Fits all of them a few
-  /// steps, then the best to convergence.
+  /// Returns sets with one more cause than the given ones, best first. Fits all of them a step, the
+  /// better half a few more, then the best to convergence.
   std::vector<CauseSet> larger(const std::vector<CauseSet>& sets) {
     const std::vector<Extension> all = extensions(sets);
     std::vector<CauseSet> out(all.size());
@@ -241,14 +242,23 @@ class Selection {
       for (const Start start : {Start::changed, Start::trial, Start::little})
         starts.push_back(extended(context_, e.from->model, t, start));
       out[static_cast<std::size_t>(i)] =
-          judged(e.members, free_run_fit(train_, starts, kScreenSteps, false).model);
+          judged(e.members, free_run_fit(train_, starts, kStartSteps, false).model);
+    });
+    const auto best_first = [&] {
+      std::stable_sort(out.begin(), out.end(),
+                       [](const CauseSet& a, const CauseSet& b) { return a.all < b.all; });
+    };
+    best_first();
+    if (const std::size_t half = (out.size() + 1) / 2; half > kFinished) out.resize(half);
+    run_all(context_.parallel, static_cast<int>(out.size()), [&](int i) {
+      CauseSet& s = out[static_cast<std::size_t>(i)];
+      s = judged(s.members, free_run_fit(train_, {s.model}, kScreenSteps, false).model);
     });
     // A set whose values do not match its names is another law. Fitted records count too, because
     // with few held-out ones several sets do nearly as well.
     const auto sort = [&] {
       std::erase_if(out, [](const CauseSet& s) { return !s.named || !std::isfinite(s.held_out); });
-      std::stable_sort(out.begin(), out.end(),
-                       [](const CauseSet& a, const CauseSet& b) { return a.all < b.all; });
+      best_first();
     };
     sort();
     if (out.size() > kFinished) out.resize(kFinished);
