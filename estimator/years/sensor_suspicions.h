@@ -55,9 +55,9 @@ class SensorSuspicions {
     double variance;    ///< of usual changes
     WeatherLags right;  ///< takes its means without that change
   };
-  /// What a sensor reads too much.
   struct Error {
-    double since_day = 0, size = 0, variance = 0;
+    double since_day = 0;
+    double size = 0, variance = 0;  ///< of what the sensor reads too much
   };
   double weigh(std::size_t index, const std::vector<LossEvidence>& series) const;
   std::vector<Error> with_likeliest() const;
