@@ -11,6 +11,7 @@ constexpr double kPerDay = 1 / (3 * WeatherLags::kYear_d);  // a sensor goes wro
 constexpr double kUsualError = 1;  // of a wrong sensor, in units of a regressor: 10 degC
 constexpr std::size_t kKept = 8;   // suspicions, the likeliest
 constexpr double kProbable = 0.95;
+constexpr double kKnown = 2;  // standard errors, for the same probability
 
 }  // namespace
 
@@ -97,7 +98,8 @@ std::vector<SensorSuspicions::Error> SensorSuspicions::with_likeliest() const {
   if (!likeliest_) return out;
   const Suspicion& s = suspicions_[*likeliest_];
   Error& error = out[s.covariate];
-  error = {s.day, error.size + s.size, error.variance + s.variance};
+  const bool back = error.size * s.size < 0;
+  error = {s.day, error.size + s.size, error.variance + s.variance, true, back};
   return out;
 }
 
@@ -107,10 +109,11 @@ std::optional<SensorSuspicions::Wrong> SensorSuspicions::wrong() const {
   const std::vector<Error> errors = with_likeliest();
   for (std::size_t c = 0; c < errors.size(); ++c) {
     const Error& e = errors[c];
-    const double off = std::abs(e.size) / covariates_[c].scale;
-    if (e.size * e.size <= e.variance || off <= furthest) continue;  // none, or mended
+    const double off = std::abs(e.size) / covariates_[c].scale, std_error = std::sqrt(e.variance);
+    const bool mended = e.changed_back && std::abs(e.size) < kKnown * std_error;
+    if (!e.wrong || mended || off <= furthest) continue;
     furthest = off;
-    out = Wrong{c, e.since_day, e.size, std::sqrt(e.variance)};
+    out = Wrong{c, e.since_day, e.size, std_error};
   }
   return out;
 }

@@ -44,7 +44,8 @@ class SensorSuspicions {
     double since_day;
     double size, std_error;  ///< of what it reads too much, in the covariate's unit
   };
-  /// Returns the sensor that is probably wrong, if any: the one that is furthest off.
+  /// Returns the sensor that is probably wrong, if any: the one that is furthest off. One that
+  /// changed back is mended if the rest is not known from 0.
   std::optional<Wrong> wrong() const;
 
  private:
@@ -58,6 +59,8 @@ class SensorSuspicions {
   struct Error {
     double since_day = 0;
     double size = 0, variance = 0;  ///< of what the sensor reads too much
+    bool wrong = false;
+    bool changed_back = false;
   };
   double weigh(std::size_t index, const std::vector<LossEvidence>& series) const;
   std::vector<Error> with_likeliest() const;

@@ -57,8 +57,7 @@ YearsWatch::YearsWatch(std::size_t elements, const std::vector<Covariate>& covar
     : elements_(elements),
       weather_(covariates),
       // All series share the budget.
-      proof_(std::log((elements > 1 ? static_cast<double>(elements) + 1 : 1) /
-                      budget.probability)),
+      proof_(std::log((elements > 1 ? static_cast<double>(elements) + 1 : 1) / budget.probability)),
       sensors_(covariates, proof_) {
   const double life_d = WeatherLags::kYear_d * budget.years,
                least = -std::log1p(-budget.least_loss);

@@ -281,6 +281,26 @@ TEST(Years, AThermometerThatLiesIsToldAndALossAfterItIsFound) {
   EXPECT_GE(all_told, 5);  // of 8; elements that hardly follow the temperature do not show it
 }
 
+TEST(Years, AThermometerThatIsMendedIsNotCalledWrong) {
+  constexpr int kLie = 700, kMended = 1000, kLast = 1100;
+  int told = 0;
+  for (unsigned seed = 0; seed < 4; ++seed)
+    for (const double degc : {-12.0, 12.0}) {
+      World world(seed);
+      YearsWatch watch(kStories, kWeather, LifeBudget{});
+      for (int day = 1; day <= kLast; ++day) {
+        world.next();
+        std::vector<DayValue> values;
+        for (const World::Story& s : world.stories) values.push_back({s.value, kNoise * s.value});
+        const double lie = day >= kLie && day < kMended ? degc : 0;
+        EXPECT_FALSE(watch.push(day, values, {world.degc + lie, world.percent})) << day;
+        if (day + 1 == kMended) told += watch.wrong_sensor() ? 1 : 0;
+      }
+      EXPECT_FALSE(watch.wrong_sensor()) << seed << " " << degc;
+    }
+  EXPECT_GE(told, 7);  // of 8
+}
+
 TEST(Years, DaysAndElementsWithoutValuesRaiseNothing) {
   EXPECT_EQ(alarms(draws(8),
                    [](int day, Seen& seen) {
