@@ -78,11 +78,11 @@ void SensorSuspicions::judge(std::vector<LossEvidence>& series) {
   }
 }
 
-void SensorSuspicions::adopt(WeatherLags& read, std::vector<LossEvidence>& series) {
+void SensorSuspicions::adopt(double proof, WeatherLags& read, std::vector<LossEvidence>& series) {
   if (!likeliest_) return;
   double rival = 0;  // healthy elements and right sensors, or the likeliest loss
   for (const LossEvidence& s : series) rival = std::max(rival, s.log_capital());
-  if (log_odds_ < proof_ + rival) return;
+  if (log_odds_ < proof + rival) return;
   read = suspicions_[*likeliest_].right;
   errors_ = with_likeliest();
   for (LossEvidence& s : series) s.adopt(*likeliest_);

@@ -18,9 +18,8 @@ namespace framewatch::estimator {
 /// docs/equations.md, years.
 class SensorSuspicions {
  public:
-  /// proof: logarithm of the odds that prove an error.
-  SensorSuspicions(const std::vector<Covariate>& covariates, double proof)
-      : covariates_(covariates), proof_(proof), errors_(covariates.size()) {}
+  explicit SensorSuspicions(const std::vector<Covariate>& covariates)
+      : covariates_(covariates), errors_(covariates.size()) {}
 
   /// Returns readings, by covariate, without the errors that are proven.
   std::vector<double> correct(std::vector<double> readings) const;
@@ -34,8 +33,9 @@ class SensorSuspicions {
   /// Weighs the suspicions by what the series have seen. Keeps the likeliest.
   void judge(std::vector<LossEvidence>& series);
   /// Takes a suspicion as known if it is proven against right sensors and against every loss: the
-  /// series and `read` go on without its error, and there are no others. Call it after judge().
-  void adopt(WeatherLags& read, std::vector<LossEvidence>& series);
+  /// series and `read` go on without its error, and there are no others. proof: logarithm of the
+  /// odds that prove it. Call it after judge().
+  void adopt(double proof, WeatherLags& read, std::vector<LossEvidence>& series);
   /// Returns the logarithm of how much likelier healthy elements are if sensors may be wrong.
   double excuse() const { return excuse_; }
 
@@ -66,7 +66,6 @@ class SensorSuspicions {
   std::vector<Error> with_likeliest() const;
 
   std::vector<Covariate> covariates_;
-  double proof_;
   std::vector<Error> errors_;  ///< proven, by covariate
   std::vector<Suspicion> suspicions_;
   std::vector<LossEvidence::Weather> weather_;

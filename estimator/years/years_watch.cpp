@@ -54,16 +54,14 @@ DayValue DayMean::mean() const {
 
 YearsWatch::YearsWatch(std::size_t elements, const std::vector<Covariate>& covariates,
                        const LifeBudget& budget)
-    : elements_(elements),
-      weather_(covariates),
-      // All series share the budget.
-      proof_(std::log((elements > 1 ? static_cast<double>(elements) + 1 : 1) / budget.probability)),
-      sensors_(covariates, proof_) {
+    : elements_(elements), weather_(covariates), sensors_(covariates) {
   const double life_d = WeatherLags::kYear_d * budget.years,
                least = -std::log1p(-budget.least_loss);
   if (elements > 1)
     series_.assign(elements, LossEvidence(prior_of(weather_.size(), kUsualOfOne), life_d, least));
   series_.emplace_back(prior_of(weather_.size(), kUsualOfAll), life_d, least);
+  // All series share the budget.
+  proof_ = std::log(static_cast<double>(series_.size()) / budget.probability);
 }
 
 const LossEvidence& YearsWatch::series(int element) const {
@@ -180,7 +178,7 @@ std::optional<YearsWatch::Finding> YearsWatch::push(double day, const std::vecto
   }
   series_.back().push(day, today, sum / n, variance / (n * n), sensors_.weather());
   sensors_.judge(series_);
-  sensors_.adopt(weather_, series_);
+  sensors_.adopt(proof_, weather_, series_);
 
   const auto most = std::max_element(series_.begin(), series_.end(), [](auto& a, auto& b) {
     return a.log_capital() < b.log_capital();

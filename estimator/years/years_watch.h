@@ -93,9 +93,9 @@ class YearsWatch {
 
   std::vector<Element> elements_;
   WeatherLags weather_;
-  double proof_;  ///< logarithm of the odds that prove a loss, or a sensor's error
   SensorSuspicions sensors_;
   std::vector<LossEvidence> series_;  ///< elements against the others, then all of them
+  double proof_;  ///< logarithm of the odds that prove a loss, or a sensor's error
   int days_ = 0;
   double last_day_ = 0;
   double all_ = 0;  ///< mean of the elements' logarithms on that day, over their references

@@ -30,8 +30,11 @@ constexpr double kWithOneMore = 0.95;  ///< largest gap with one more: a tenth o
 constexpr double kNearly = 1.1;    ///< gap over the best's, below which a set does nearly as well
 constexpr double kMinShare = 0.1;  ///< of the design, of a start's stiffness or damping
 constexpr double kLittle = 0.1;    ///< of the size that an effect has in its trial
-/// Steps of every start; of the better half of the sets, from their best start; of the others.
-constexpr int kStartSteps = 1, kScreenSteps = 3, kJointSteps = 5, kNoneSteps = 8;
+// Steps of a fit.
+constexpr int kStartSteps = 1;   ///< of each start of a set
+constexpr int kScreenSteps = 3;  ///< of the better half of the sets, after their best start's
+constexpr int kJointSteps = 5;   ///< in a round of a fit to convergence
+constexpr int kNoneSteps = 8;    ///< of the model without causes
 
 struct CauseSet {
   Members members;
