@@ -285,6 +285,16 @@ class Checker {
     }
   }
 
+  void check_peak_oriented() {
+    const bool oriented = effect_.value("peak_oriented") == 1;
+    if (!oriented && effect_.value("peak_oriented") != 0) add("peak_oriented", "must be 0 or 1");
+    if (!oriented && effect_.value("unloading") > 0)
+      add("unloading", "must be 0 without peak_oriented");
+    if (oriented)
+      for (const std::string_view key : {"spread", "strength_loss", "sharpness"})
+        if (effect_.value(key) > 0) add(key, "must be 0 with peak_oriented");
+  }
+
   void check_together() {
     if (effect_.kind == EffectKind::one_sided_gap && std::abs(effect_.value("side")) != 1)
       add("side", "must be 1 or -1");
@@ -296,6 +306,7 @@ class Checker {
     if (round)
       for (const std::string_view key : {"spread", "strength_loss"})
         if (effect_.value(key) > 0) add(key, "must be 0 with sharpness");
+    if (effect_.kind == EffectKind::bilinear_hysteresis) check_peak_oriented();
     if (effect_.kind == EffectKind::unmeasured_force &&
         effect_.value("low_hz") >= effect_.value("high_hz"))
       add("low_hz", "must be below high_hz");

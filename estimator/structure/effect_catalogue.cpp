@@ -93,12 +93,20 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
                "s: ten springs yield in turn between dy (1 - s) and dy (1 + s); 0: one corner"),
         kStrengthLoss,
         within("sharpness", "", 0.0, 0, 60,
-               "n: round yielding, 1 is hyperbolic, instead of s and a; 0: none")},
+               "n: round yielding, 1 is hyperbolic, instead of s and a; 0: none"),
+        within("peak_oriented", "", 0.0, 0, 1,
+               "1: z returns toward the largest deformation so far, instead of s, a and n"),
+        within("unloading", "", 0.0, 0, 1,
+               "u, with peak_oriented: unloading from the largest deformation P has the slope "
+               "(dy/P)^u")},
        "f = kh z; z' = v while abs(z) < dy or z v < 0, else 0; with n: z = d/(1 + "
-       "abs(d/dy)^n)^(1/n) at first loading, after reversals doubled by Masing's rule",
+       "abs(d/dy)^n)^(1/n) at first loading, after reversals doubled by Masing's rule; "
+       "with peak_oriented: z unloads to 0, then goes straight to dy at the largest deformation so "
+       "far of the other side",
        kHystereticSign,
        "Caughey, J. Appl. Mech. 27 (1960); n: Masing 1926, Kondner, J. Soil Mech. Found. Div. 89 "
-       "(1963), Richard and Abbott, J. Eng. Mech. Div. 101 (1975)"},
+       "(1963), Richard and Abbott, J. Eng. Mech. Div. 101 (1975); peak_oriented: Clough and "
+       "Johnston 1966, Takeda, Sozen and Nielsen, J. Struct. Div. 96 (1970)"},
       {bouc_wen,
        "bouc_wen",
        kElement,

@@ -85,6 +85,45 @@ class SlackBrace : public estimator::ElementLaw {
   double k_, yield_, up_ = 0, down_ = 0;
 };
 
+/// A wall of concrete: half cycles aim at the largest displacement so far, the force grows by a
+/// share of the first stiffness after yielding (Clough and Johnston 1966).
+class ConcreteWall : public estimator::ElementLaw {
+ public:
+  ConcreteWall(double stiffness, double yield)
+      : k_(stiffness), top_(yield), bottom_(-yield), yield_(yield) {}
+  double force(double, double d, double, std::span<const double>) const override {
+    if (d == d_) return f_;
+    const bool up = d > d_;
+    const double peak = up ? top_ : bottom_;
+    const double elastic = f_ + k_ * (d - d_);
+    if (up ? f_ < 0 : f_ > 0) {  // unloads first
+      const double zero = d_ - f_ / k_;
+      if (up ? d <= zero : d >= zero) return elastic;
+      return beyond(d, zero, 0, peak);
+    }
+    return beyond(d, d_, f_, peak);
+  }
+  void begin_step(double time_s, double d) override {
+    f_ = force(time_s, d, 0, {});
+    d_ = d;
+    top_ = std::max(top_, d);
+    bottom_ = std::min(bottom_, d);
+  }
+  double stiffness_bound() const override { return k_; }
+
+ private:
+  static constexpr double kHardens = 0.04;
+  double envelope(double d) const {
+    return std::copysign(k_ * (yield_ + kHardens * (std::abs(d) - yield_)), d);
+  }
+  double beyond(double d, double from, double f, double peak) const {
+    if (std::abs(d) >= std::abs(peak) && d * peak > 0) return envelope(d);
+    return f + (envelope(peak) - f) * (d - from) / (peak - from);
+  }
+
+  double k_, top_, bottom_, yield_, d_ = 0, f_ = 0;
+};
+
 double softplus(double x) {
   return x > 30 ? x : std::log1p(std::exp(x));
 }
@@ -119,6 +158,8 @@ std::unique_ptr<estimator::ElementLaw> make_sliding(const std::string& name, con
                                      0.02 / (s * e.k * dy * dy));
   }
   if (name == "slack brace") return std::make_unique<SlackBrace>(s * e.k, (0.2 + 0.2 * u) * e.d);
+  if (name == "concrete wall")
+    return std::make_unique<ConcreteWall>(s * e.k, (0.15 + 0.25 * u) * e.d);
   if (name == "lopsided yield")
     return std::make_unique<Sliders>(std::vector<Sliders::Part>{{s * e.k, 0.12 * e.d, 0.5 * e.d}});
   return nullptr;
@@ -205,6 +246,7 @@ std::vector<std::string> accepted(const std::string& name) {
   if (name == "three sliders" || name == "twelve sliders" || name == "yielding that tires")
     return {"bilinear_hysteresis", "bouc_wen"};
   if (name == "slack brace") return {"pinching"};
+  if (name == "concrete wall") return {"bilinear_hysteresis"};
   if (name == "whole frame softens") return {"amplitude_dependence"};
   if (name == "smooth drop") return {"stiffness_drop", "stiffness_drift"};
   if (name == "tanh softening" || name == "two-slope softening")
@@ -230,6 +272,7 @@ estimator::LawKind sort_of(const std::string& name) {
       {"twelve sliders", hysteretic},
       {"yielding that tires", hysteretic},
       {"slack brace", hysteretic},
+      {"concrete wall", hysteretic},
       {"whole frame softens", elastic},
       {"lopsided yield", hysteretic},
       {"wavy spring", elastic},
@@ -240,7 +283,8 @@ estimator::LawKind sort_of(const std::string& name) {
 
 bool takes_over(const std::string& name) {
   return name == "three sliders" || name == "twelve sliders" || name == "yielding that tires" ||
-         name == "slack brace" || name == "lopsided yield" || name == "tanh softening";
+         name == "slack brace" || name == "concrete wall" || name == "lopsided yield" ||
+         name == "tanh softening";
 }
 
 }  // namespace
@@ -250,7 +294,7 @@ const std::vector<std::string>& other_forms() {
       "smooth gap",        "power 2.5",           "damping power 1.6", "stick and slip",
       "three sliders",     "smooth drop",         "tanh softening",    "two-slope softening",
       "Stribeck friction", "stop with a dashpot", "twelve sliders",    "yielding that tires",
-      "slack brace",       "whole frame softens"};
+      "slack brace",       "whole frame softens", "concrete wall"};
   return kNames;
 }
 

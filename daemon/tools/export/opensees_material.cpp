@@ -44,6 +44,12 @@ Materials bilinear_materials(const Effect& e, const MaterialScale& scale, std::s
         "no material of OpenSees yields as roundly by Masing's rule; without sharpness it has one";
     return {};
   }
+  if (e.value("peak_oriented") > 0) {
+    why =
+        "no elastic-plastic material of OpenSees returns toward its largest deformation; without "
+        "peak_oriented it has one";
+    return {};
+  }
   if (e.value("strength_loss") > 0) {
     why = "no material of OpenSees yields like it and loses strength by its work";
     return {};

@@ -210,6 +210,46 @@ double asymptotic_z(const LawValues& values, const std::vector<double>& memory, 
   return now[kReversalZ] + way * bent(x, sharpness);
 }
 
+double PeakOriented::unloading_slope(const Side& side) const {
+  return side.peak > 1 && unloading_ > 0 ? std::pow(side.peak, -unloading_) : 1;
+}
+
+double PeakOriented::at(double x) const {
+  if (x == x_) return z_;
+  const double direction = x > x_ ? 1.0 : -1.0, to = direction * x;
+  const Side &ahead = side(direction), &behind = side(-direction);
+  double from = direction * x_, z = direction * z_;
+  if (z < 0) {
+    const double slope = unloading_slope(behind), zero = from - z / slope;
+    if (to <= zero) return direction * (z + slope * (to - from));
+    from = zero;
+    z = 0;
+  } else if (ahead.turned && from < ahead.x) {
+    if (to <= ahead.x) return direction * (z + unloading_slope(ahead) * (to - from));
+    from = ahead.x;
+    z = ahead.z;
+  }
+  if (to >= ahead.peak) return direction;
+  return direction * (z + (1 - z) * (to - from) / (ahead.peak - from));
+}
+
+void PeakOriented::move(double x) {
+  if (x == x_) return;
+  const double direction = x > x_ ? 1.0 : -1.0, now = at(x);
+  if (Side& left = side(-direction); direction == -direction_) {
+    const double turn = -direction * x_;
+    if (!left.turned || turn >= left.x) left = {left.peak, true, turn, -direction * z_};
+  }
+  for (const double to : {1.0, -1.0}) {
+    Side& of = side(to);
+    of.turned = of.turned && to * now > 0 && to * x < of.x;
+    of.peak = std::max(of.peak, to * x);
+  }
+  x_ = x;
+  z_ = now;
+  direction_ = direction;
+}
+
 double slider_force(const LawValues& values, const std::vector<double>& at, double d, double work) {
   const double weaker = weaker_of(values, work);
   double sum = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "estimator/diagnose/law/law_parameter.h"
@@ -51,6 +53,42 @@ struct AsymptoteIndex {
 /// Masing 1926; Kondner 1963; Richard and Abbott 1975.
 struct MasingIndex {
   enum : std::size_t { kh, dy, sharpness };
+};
+
+/// Indices of the parameters of LawForm::peak_oriented: concrete that cracks and yields.
+struct PeakIndex {
+  enum : std::size_t { kh, dy, unloading };
+};
+
+/// Yielding whose force returns toward the largest deformation so far. In units of dy, z rises to 1
+/// at the largest deformation P so far on its side, at least 1, and stays there beyond. Unloading
+/// has the slope P^-unloading down to z = 0; from there a straight line leads to the largest
+/// deformation of the other side. A cycle that turns before z = 0 returns on its own line first.
+/// Sources: Clough and Johnston 1966 (unloading 0); Takeda, Sozen and Nielsen, J. Struct. Div. 96
+/// (1970); Mahin and Bertero, J. Struct. Div. 102 (1976).
+class PeakOriented {
+ public:
+  /// Starts at rest. unloading: 0 to 1.
+  explicit PeakOriented(double unloading) : unloading_(unloading) {}
+
+  /// Returns z after a step from the current deformation to x.
+  double at(double x) const;
+  /// Ends the step at x.
+  void move(double x);
+
+ private:
+  /// One side, with deformation and z positive toward it.
+  struct Side {
+    double peak = 1;
+    bool turned = false;  ///< unloading began at `x`, `z` and has not reached z = 0
+    double x = 0, z = 0;
+  };
+  Side& side(double direction) { return sides_[direction > 0 ? 0 : 1]; }
+  const Side& side(double direction) const { return sides_[direction > 0 ? 0 : 1]; }
+  double unloading_slope(const Side& side) const;
+
+  double unloading_, x_ = 0, z_ = 0, direction_ = 0;
+  std::array<Side, 2> sides_;
 };
 
 /// Returns the spread of sliders that yield about as gradually as an asymptotic law with this

@@ -119,7 +119,7 @@ bool is_element_law(LawForm form) {
 }
 
 bool is_hysteretic(LawForm form) {
-  return form >= LawForm::hysteresis && form <= LawForm::slack;
+  return form >= LawForm::hysteresis && form <= LawForm::peak_oriented;
 }
 
 bool is_contact(LawForm form) {
@@ -137,6 +137,7 @@ LawMotion::LawMotion(const LawValues& values) : values_(values) {
     slip_.emplace(Softening(values.p[MasingIndex::sharpness] + 1, 1));
     slip_unit_m_ = values.p[MasingIndex::dy];
   }
+  if (values.form == LawForm::peak_oriented) peaks_.emplace(values.p[PeakIndex::unloading]);
   if (values.form == LawForm::amplitude) {
     slip_unit_m_ = values.deformation;
     softening_.emplace(values.p[A::exponent], value_or(values.p, A::saturation, 0));
@@ -183,6 +184,8 @@ double LawMotion::plain_force(double d, double v, double t) {
       return p[0] * p[1] * asymptotic_z(values_, memory_, z_, d_, d);
     case LawForm::masing:
       return p[0] * p[1] * masing_z(p, *slip_, d / p[1]);
+    case LawForm::peak_oriented:
+      return p[0] * p[1] * peaks_->at(d / p[1]);
     case LawForm::slack:
       return p[0] * slack_force(p, memory_, d);
     case LawForm::friction:
@@ -208,7 +211,8 @@ double LawMotion::plain_force(double d, double v, double t) {
 void LawMotion::accept(double d, double v, double t) {
   if (preslides(values_)) z_ = sliding_z(values_.p, z_, v_, v, t - t_);
   if (slip_) slip_->move(d / slip_unit_m_);
-  if (is_hysteretic(values_.form) && values_.form != LawForm::masing) {
+  if (peaks_) peaks_->move(d / values_.p[PeakIndex::dy]);
+  if (is_hysteretic(values_.form) && !slip_ && !peaks_) {
     const double dy = values_.p[HysteresisIndex::dy];
     if (values_.form == LawForm::sliders) {
       const double force = slider_force(values_, memory_, d, work_) / dy;

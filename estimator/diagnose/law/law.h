@@ -126,6 +126,7 @@ class LawMotion {
   std::vector<double> memory_;  ///< positions of sliders, last reversal, or slack
   std::optional<Softening> softening_;
   std::optional<SlipCurve> slip_;
+  std::optional<PeakOriented> peaks_;
   double slip_unit_m_ = 1;  ///< deformation that is 1 of slip_
 };
 

@@ -47,7 +47,8 @@ enum class LawForm {
   pinched,     ///< hysteresis with a slip zone around zero force
   slip_lock,   ///< hysteresis with a slip zone around zero deformation
   slack,       ///< a brace that becomes slack by its plastic deformation: SlackIndex
-  friction,    ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: FrictionIndex
+  peak_oriented,  ///< kh z, yielding that returns toward the largest deformation: PeakOriented
+  friction,       ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: FrictionIndex
   power_damping,  ///< a sgn(v) |v/V|^p
   amplitude,      ///< a ((1 - s) z(d/D) + s slip(d/D)) + b sgn(v) |v/V|^q: AmplitudeIndex
   gap_positive,   ///< contact at clearance g: max(kg (d - g) + cg v, 0) while d > g

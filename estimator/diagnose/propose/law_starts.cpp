@@ -114,6 +114,18 @@ LawStarts masing(const LawScale& s) {
   return out;
 }
 
+/// Returns concrete: each half cycle returns toward the largest deformation so far.
+LawStarts peak_oriented(const LawScale& s) {
+  LawStarts out{F::peak_oriented, EffectKind::bilinear_hysteresis, {}};
+  for (const double unloading : {0.0, 0.4})
+    for (const double yield : shrinking(0.9, 0.04, 0.7))
+      out.shapes.push_back(
+          {linear_parameter(1, 0.01 * s.stiffness),
+           logarithmic_parameter(yield * s.deformation, 1e-3 * s.deformation, 5 * s.deformation),
+           held(unloading, 0.02, 0, 1)});
+  return out;
+}
+
 /// offset; slip_work 0: the slip zone is open from the start.
 Shape pinched(const LawScale& s, double yield, double exponent, double slip, double width,
               double offset, double slip_work) {
@@ -261,8 +273,9 @@ std::vector<LawStarts> plain_starts(const LawScale& s) {
 }
 
 std::vector<LawStarts> hysteretic_starts(const LawScale& s, bool pinching) {
-  std::vector<LawStarts> out{bouc_wen(s, 1), bouc_wen(s, 2), bouc_wen(s, kBilinear), degrading(s),
-                             hardening(s),   sliders(s),     asymptotic(s),          masing(s)};
+  std::vector<LawStarts> out{bouc_wen(s, 1), bouc_wen(s, 2), bouc_wen(s, kBilinear),
+                             degrading(s),   hardening(s),   sliders(s),
+                             asymptotic(s),  masing(s),      peak_oriented(s)};
   if (pinching)
     for (LawStarts& one :
          std::vector<LawStarts>{slip_about_force(s), slip_that_opens(s), slip_lock(s), slack(s)})
@@ -291,6 +304,9 @@ void free_shape(ModelEffect& effect) {
       break;
     case F::slack:
       release(SlackIndex::play);
+      break;
+    case F::peak_oriented:
+      release(PeakIndex::unloading);
       break;
     case F::friction:
       release(FrictionIndex::presliding);

@@ -92,6 +92,7 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) 
     case LawForm::sliders:
     case LawForm::asymptotic:
     case LawForm::masing:
+    case LawForm::peak_oriented:
       return effect.parameters[1].plain() < kRigid * effect.deformation
                  ? EffectKind::coulomb_friction
                  : EffectKind::bilinear_hysteresis;

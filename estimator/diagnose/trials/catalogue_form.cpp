@@ -91,6 +91,10 @@ void set_hysteresis(const ModelEffect& e, Effect& out) {
   }
   if (e.form == LawForm::asymptotic) out.set("spread", spread_like(p[AsymptoteIndex::sharpness]));
   if (e.form == LawForm::masing) out.set("sharpness", p[MasingIndex::sharpness]);
+  if (e.form == LawForm::peak_oriented) {
+    out.set("peak_oriented", 1);
+    out.set("unloading", p[PeakIndex::unloading]);
+  }
   if (e.form == LawForm::slack) {
     out.set("slip_ratio", 0);
     out.set("slack", 1);

@@ -63,6 +63,7 @@ LawForm form_of(const Effect& effect) {
     case p_delta:
       return LawForm::power;
     case bilinear_hysteresis:
+      if (effect.value("peak_oriented") > 0) return LawForm::peak_oriented;
       if (effect.value("sharpness") > 0) return LawForm::masing;
       return effect.value("spread") > 0 || effect.value("strength_loss") > 0 ? LawForm::sliders
                                                                              : LawForm::hysteresis;
@@ -247,6 +248,11 @@ void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>
       e.parameters = {sized(value("kh_npm")),
                       logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
                       logarithmic_parameter(value("sharpness"), 0.1, 60)};
+      break;
+    case LawForm::peak_oriented:
+      e.parameters = {sized(value("kh_npm")),
+                      logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
+                      bounded_parameter(value("unloading"), 0.02, 0, 1, value("unloading") > 0)};
       break;
     case LawForm::slack:
       e.parameters = {sized(value("kh_npm")),

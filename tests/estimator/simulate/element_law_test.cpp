@@ -136,6 +136,23 @@ TEST(ElementLaw, RoundYieldingLosesTheAreaOfMasingsLoop) {
               0.01 * unit);
 }
 
+TEST(ElementLaw, PeakOrientedYieldingReturnsToItsLargestDeformation) {
+  constexpr double kStiffness_npm = 1e4, kYields_m = 2e-3;
+  Effect effect = example(EffectKind::bilinear_hysteresis);
+  effect.set("kh_npm", kStiffness_npm);
+  effect.set("dy_m", kYields_m);
+  effect.set("peak_oriented", 1);
+  Led led(effect);
+  led.cycles(1);
+  const double after_one = led.energy_j();
+  led.cycles(1);
+  // Half of the loop: a triangle from where it unloads to zero, over the way to the other peak.
+  const double unit = kStiffness_npm * kYields_m * kYields_m, x = kPeak_m / kYields_m;
+  EXPECT_NEAR(led.energy_j() - after_one, unit * (2 * x - 2), 0.001 * unit);
+  led.to(kPeak_m);
+  EXPECT_NEAR(led.force(), kStiffness_npm * kYields_m, 1e-6);
+}
+
 TEST(ElementLaw, PositiveSizesPushBack) {
   using enum EffectKind;
   for (const EffectKind kind : {cubic_stiffness, quadratic_stiffness, bilinear_hysteresis, bouc_wen,

@@ -114,6 +114,18 @@ TEST(EffectProblems, NameTheKeyAndTheRule) {
   round.set("sharpness", 0.1);
   EXPECT_EQ(first_problem(round),
             "sharpness|bilinear_hysteresis.sharpness: must be 0 or at least 0.2");
+  Effect oriented = test::example_effect(bilinear_hysteresis, m);
+  oriented.set("unloading", 0.5);
+  EXPECT_EQ(first_problem(oriented),
+            "unloading|bilinear_hysteresis.unloading: must be 0 without peak_oriented");
+  oriented.set("peak_oriented", 1);
+  EXPECT_EQ(first_problem(oriented), "none");
+  oriented.set("spread", 0.5);
+  EXPECT_EQ(first_problem(oriented),
+            "spread|bilinear_hysteresis.spread: must be 0 with peak_oriented");
+  oriented.set("peak_oriented", 0.5);
+  EXPECT_EQ(first_problem(oriented),
+            "peak_oriented|bilinear_hysteresis.peak_oriented: must be 0 or 1");
   Effect wrong = test::example_effect(cubic_stiffness, m);
   wrong.place.kind = PlaceKind::channel;
   EXPECT_NE(first_problem(wrong).find("cannot be at this kind of place"), std::string::npos);

@@ -252,6 +252,9 @@ TEST(OpenSeesModel, RefusesByNameWhatOpenSeesLacks) {
   Effect round = example_effect(EffectKind::bilinear_hysteresis, table);
   round.set("sharpness", 1);
   EXPECT_EQ(problems_of({table.structure, table.theta, {}, {round}}).size(), 1u);
+  Effect oriented = example_effect(EffectKind::bilinear_hysteresis, table);
+  oriented.set("peak_oriented", 1);
+  EXPECT_EQ(problems_of({table.structure, table.theta, {}, {oriented}}).size(), 1u);
   const test::TableModel rigid = test::table_model(estimator::FloorModel::rigid);
   for (const EffectKind kind : {EffectKind::base_rocking, EffectKind::floor_flexibility})
     EXPECT_EQ(problems_of({rigid.structure, rigid.theta, {}, {example_effect(kind, rigid)}}).size(),

@@ -62,8 +62,8 @@ TEST(Law, OnlyElementLawsHaveAForceHere) {
   for (const LawForm form :
        {LawForm::power, LawForm::saturating, LawForm::hysteresis, LawForm::sliders,
         LawForm::asymptotic, LawForm::masing, LawForm::pinched, LawForm::slip_lock, LawForm::slack,
-        LawForm::friction, LawForm::power_damping, LawForm::amplitude, LawForm::gap_positive,
-        LawForm::gap_negative, LawForm::gap_both, LawForm::changing})
+        LawForm::peak_oriented, LawForm::friction, LawForm::power_damping, LawForm::amplitude,
+        LawForm::gap_positive, LawForm::gap_negative, LawForm::gap_both, LawForm::changing})
     EXPECT_TRUE(is_element_law(form)) << static_cast<int>(form);
   for (const LawForm form :
        {LawForm::mass, LawForm::resonator, LawForm::spring, LawForm::damper, LawForm::rocking,
@@ -187,18 +187,39 @@ TEST(Law, SlippingJointsMatchTheSimulator) {
   EXPECT_LT((force - simulated).cwiseAbs().maxCoeff(), 0.01 * most);
 }
 
+/// Returns bilinear_hysteresis with kStiffness and kYields_m.
+Effect yielding() {
+  Effect out = make_effect(EffectKind::bilinear_hysteresis, test::frame_place(0));
+  out.set("kh_npm", kStiffness);
+  out.set("dy_m", kYields_m);
+  return out;
+}
+
 TEST(Law, RoundYieldingMatchesTheSimulator) {
   const VectorXd d = growing_cycles(800);
+  Effect effect = yielding();
   for (const double sharpness : {0.6, 1.0, 3.0, 20.0}) {
-    Effect effect = make_effect(EffectKind::bilinear_hysteresis, test::frame_place(0));
-    effect.set("kh_npm", kStiffness);
-    effect.set("dy_m", kYields_m);
     effect.set("sharpness", sharpness);
     const VectorXd force =
         force_over({LawForm::masing, {kStiffness, kYields_m, sharpness}, 1, 1}, d);
     EXPECT_LT((force - simulated_force(effect, d)).cwiseAbs().maxCoeff(),
               0.01 * force.cwiseAbs().maxCoeff())
         << sharpness;
+  }
+}
+
+TEST(Law, PeakOrientedYieldingMatchesTheSimulator) {
+  VectorXd d = growing_cycles(800);
+  for (Index i = 0; i < d.size(); ++i) d[i] += kYields_m * std::sin(0.2 * static_cast<double>(i));
+  Effect effect = yielding();
+  effect.set("peak_oriented", 1);
+  for (const double unloading : {0.0, 0.5}) {
+    effect.set("unloading", unloading);
+    const VectorXd force =
+        force_over({LawForm::peak_oriented, {kStiffness, kYields_m, unloading}, 1, 1}, d);
+    EXPECT_LT((force - simulated_force(effect, d)).cwiseAbs().maxCoeff(),
+              1e-9 * kStiffness * kYields_m)
+        << unloading;
   }
 }
 
@@ -433,51 +454,6 @@ TEST(Law, ForceOfAKnownMotionFollowsItsTime) {
   const VectorXd expected = (VectorXd(5) << 0, 0, 4, 8, 8).finished();
   EXPECT_LT((force - expected).norm(), kRounding);
   EXPECT_EQ(law_force(law, VectorXd(), VectorXd(), 0.25).size(), 0);
-}
-
-LawValues brace(double play_m) {
-  return {LawForm::slack, {kStiffness, kYields_m, play_m}, 1, 1};
-}
-
-VectorXd brace_force(const LawValues& law, const VectorXd& d) {
-  return law_force(law, d, VectorXd::Zero(d.size()), 0.01) / (kStiffness * kYields_m);
-}
-
-TEST(SlackBrace, PullsFromItsPlasticDeformation) {
-  VectorXd d(6), expected(6);
-  d << 4, 3.5, 0, 3, 5, -0.5;
-  expected << 1, 0.5, 0, 0, 1, -0.5;  // yields, returns, is slack, is tight again
-  EXPECT_LT((brace_force(brace(0), kYields_m * d) - expected).norm(), kRounding);
-  d << 0.2, -0.3, 0.8, -2, -1.2, 0;
-  expected << 0, 0, 0.5, -1, -0.2, 0;
-  EXPECT_LT((brace_force(brace(0.3 * kYields_m), kYields_m * d) - expected).norm(), kRounding);
-}
-
-/// The simulator takes steps of a tenth.
-TEST(SlackBrace, MatchesTheSimulator) {
-  constexpr int kFiner = 10;
-  constexpr Index kSteps = 2000;
-  constexpr double kPlay_m = 0.3 * kYields_m;
-  Effect effect = make_effect(EffectKind::pinching, test::frame_place(0));
-  effect.set("kh_npm", kStiffness);
-  effect.set("dy_m", kYields_m);
-  effect.set("slack", 1);
-  effect.set("play_m", kPlay_m);
-  const auto simulated = make_law(effect, test::Small::one_story());
-  const auto deformation = [](double turn) {
-    return 4 * kYields_m * turn * std::sin(2 * M_PI * 5 * turn);
-  };
-  VectorXd d(kSteps), force(kSteps);
-  for (Index i = 0; i < kSteps; ++i) {
-    for (int fine = 0; fine < kFiner; ++fine)
-      simulated->begin_step(
-          0,
-          deformation((static_cast<double>(i) + static_cast<double>(fine) / kFiner - 1) / kSteps));
-    d[i] = deformation(static_cast<double>(i) / kSteps);
-    force[i] = simulated->force(0, d[i], 0, {}) / (kStiffness * kYields_m);
-  }
-  EXPECT_NEAR(force.maxCoeff(), 1, kRounding);
-  EXPECT_LT((brace_force(brace(kPlay_m), d) - force).cwiseAbs().maxCoeff(), 1e-3);
 }
 
 }  // namespace law_test

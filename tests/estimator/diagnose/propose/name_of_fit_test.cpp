@@ -80,13 +80,15 @@ TEST(NameOfFit, YieldAndSharpnessDistinguishHysteresis) {
   EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 2), "coulomb_friction");
 }
 
-TEST(NameOfFit, RoundYieldingIsFrictionIfItYieldsAtOnce) {
-  const auto round = [](double yield_share) {
-    return name(effect_with(LawForm::masing, {1e6, yield_share * kPeak_m, 1}));
-  };
-  EXPECT_EQ(round(0.3), "bilinear_hysteresis");
-  EXPECT_EQ(round(kRigidShare * (1 + kNear)), "bilinear_hysteresis");
-  EXPECT_EQ(round(kRigidShare * (1 - kNear)), "coulomb_friction");
+TEST(NameOfFit, YieldingIsFrictionIfItYieldsAtOnce) {
+  for (const LawForm form : {LawForm::masing, LawForm::peak_oriented}) {
+    const auto yielding = [form](double yield_share) {
+      return name(effect_with(form, {1e6, yield_share * kPeak_m, 1}));
+    };
+    EXPECT_EQ(yielding(0.3), "bilinear_hysteresis");
+    EXPECT_EQ(yielding(kRigidShare * (1 + kNear)), "bilinear_hysteresis");
+    EXPECT_EQ(yielding(kRigidShare * (1 - kNear)), "coulomb_friction");
+  }
 }
 
 TEST(NameOfFit, IgnoresASlipZoneAsWideAsTheLoop) {

@@ -129,6 +129,19 @@ TEST(CatalogueForm, SharpnessSurvivesTheRoundTrip) {
   }
 }
 
+TEST(CatalogueForm, PeakOrientedYieldingSurvivesTheRoundTrip) {
+  const Scene scene;
+  Effect effect = test::example_effect(EffectKind::bilinear_hysteresis, scene.model);
+  effect.set("peak_oriented", 1);
+  for (const double unloading : {0.0, 0.5}) {
+    effect.set("unloading", unloading);
+    const Effect back = scene.round_trip(effect);
+    for (const EffectParameter& p : describe(effect.kind).parameters)
+      EXPECT_NEAR(back.value(p.key), effect.value(p.key), kRounding * (1 + effect.value(p.key)))
+          << p.key;
+  }
+}
+
 TEST(CatalogueForm, AFrameThatWouldLoseMoreThanAllSaturatesAtASmallerDeformation) {
   const Scene scene;
   Effect effect = test::example_effect(EffectKind::amplitude_dependence, scene.model);
