@@ -40,7 +40,8 @@ class YieldingSprings : public ElementLaw {
       : kh_(e.value("kh_npm")),
         dy_(e.value("dy_m")),
         spread_(e.value("spread")),
-        loss_(e.value("strength_loss")) {}
+        loss_(e.value("strength_loss")),
+        asymmetry_(e.value("asymmetry")) {}
   int states() const override { return kSprings + 1; }
   double force(double, double, double, std::span<const double> z) const override {
     return kh_ * dy_ * mean(z);
@@ -50,8 +51,8 @@ class YieldingSprings : public ElementLaw {
     const double work = mean(z) * v / dy_;
     rate[kSprings] = work;
     for (std::size_t i = 0; i < kSprings; ++i) {
-      const double limit =
-          (1 + spread_ * ((2.0 * static_cast<double>(i) + 1) / kSprings - 1)) / weaker;
+      const double limit = (1 + spread_ * ((2.0 * static_cast<double>(i) + 1) / kSprings - 1)) /
+                           weaker * (1 + sign(z[i]) * asymmetry_);
       const bool yields = std::abs(z[i]) >= limit && z[i] * v > 0;
       rate[i] = yields ? -sign(z[i]) * limit * loss_ / weaker * work : v / dy_;
     }
@@ -66,7 +67,7 @@ class YieldingSprings : public ElementLaw {
     return sum / kSprings;
   }
 
-  double kh_, dy_, spread_, loss_;
+  double kh_, dy_, spread_, loss_, asymmetry_;
 };
 
 /// Round yielding that follows Masing's rule: parallel springs in series with sliders that yield
@@ -244,7 +245,7 @@ std::unique_ptr<ElementLaw> make_hysteretic_law(const Effect& e) {
   if (e.kind != EffectKind::bilinear_hysteresis) return std::make_unique<BoucWen>(e);
   if (e.value("peak_oriented") > 0) return std::make_unique<PeakOrientedYielding>(e);
   if (e.value("sharpness") > 0) return std::make_unique<RoundYielding>(e);
-  if (e.value("spread") > 0 || e.value("strength_loss") > 0)
+  if (e.value("spread") > 0 || e.value("strength_loss") > 0 || e.value("asymmetry") != 0)
     return std::make_unique<YieldingSprings>(e);
   return make_slider(e.value("kh_npm"), e.value("dy_m"));
 }

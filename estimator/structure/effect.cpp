@@ -291,8 +291,8 @@ class Checker {
     if (!oriented && effect_.value("unloading") > 0)
       add("unloading", "must be 0 without peak_oriented");
     if (oriented)
-      for (const std::string_view key : {"spread", "strength_loss", "sharpness"})
-        if (effect_.value(key) > 0) add(key, "must be 0 with peak_oriented");
+      for (const std::string_view key : {"spread", "strength_loss", "sharpness", "asymmetry"})
+        if (effect_.value(key) != 0) add(key, "must be 0 with peak_oriented");
   }
 
   void check_together() {
@@ -304,8 +304,8 @@ class Checker {
     if (round && effect_.value("sharpness") < kRoundest)
       add("sharpness", "must be 0 or at least 0.2");
     if (round)
-      for (const std::string_view key : {"spread", "strength_loss"})
-        if (effect_.value(key) > 0) add(key, "must be 0 with sharpness");
+      for (const std::string_view key : {"spread", "strength_loss", "asymmetry"})
+        if (effect_.value(key) != 0) add(key, "must be 0 with sharpness");
     if (effect_.kind == EffectKind::bilinear_hysteresis) check_peak_oriented();
     if (effect_.kind == EffectKind::unmeasured_force &&
         effect_.value("low_hz") >= effect_.value("high_hz"))

@@ -93,12 +93,14 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
                "s: ten springs yield in turn between dy (1 - s) and dy (1 + s); 0: one corner"),
         kStrengthLoss,
         within("sharpness", "", 0.0, 0, 60,
-               "n: round yielding, 1 is hyperbolic, instead of s and a; 0: none"),
+               "n: round yielding, 1 is hyperbolic, instead of s, a and c; 0: none"),
         within("peak_oriented", "", 0.0, 0, 1,
-               "1: z returns toward the largest deformation so far, instead of s, a and n"),
+               "1: z returns toward the largest deformation so far, instead of s, a, n and c"),
         within("unloading", "", 0.0, 0, 1,
                "u, with peak_oriented: unloading from the largest deformation P has the slope "
-               "(dy/P)^u")},
+               "(dy/P)^u"),
+        within("asymmetry", "", 0.0, -0.95, 0.95,
+               "c: yields at (1 + c) dy toward positive, (1 - c) dy toward negative deformation")},
        "f = kh z; z' = v while abs(z) < dy or z v < 0, else 0; with n: z = d/(1 + "
        "abs(d/dy)^n)^(1/n) at first loading, after reversals doubled by Masing's rule; "
        "with peak_oriented: z unloads to 0, then goes straight to dy at the largest deformation so "

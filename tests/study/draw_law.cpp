@@ -246,7 +246,7 @@ std::vector<std::string> accepted(const std::string& name) {
   if (name == "three sliders" || name == "twelve sliders" || name == "yielding that tires")
     return {"bilinear_hysteresis", "bouc_wen"};
   if (name == "slack brace") return {"pinching"};
-  if (name == "concrete wall") return {"bilinear_hysteresis"};
+  if (name == "concrete wall" || name == "lopsided yield") return {"bilinear_hysteresis"};
   if (name == "whole frame softens") return {"amplitude_dependence"};
   if (name == "smooth drop") return {"stiffness_drop", "stiffness_drift"};
   if (name == "tanh softening" || name == "two-slope softening")
@@ -294,13 +294,13 @@ const std::vector<std::string>& other_forms() {
       "smooth gap",        "power 2.5",           "damping power 1.6", "stick and slip",
       "three sliders",     "smooth drop",         "tanh softening",    "two-slope softening",
       "Stribeck friction", "stop with a dashpot", "twelve sliders",    "yielding that tires",
-      "slack brace",       "whole frame softens", "concrete wall"};
+      "slack brace",       "whole frame softens", "concrete wall",     "lopsided yield"};
   return kNames;
 }
 
 const std::vector<std::string>& outsiders() {
-  static const std::vector<std::string> kNames{"lopsided yield", "wavy spring",
-                                               "damping that grows", "pulsing stiffness"};
+  static const std::vector<std::string> kNames{"wavy spring", "damping that grows",
+                                               "pulsing stiffness"};
   return kNames;
 }
 

@@ -31,11 +31,18 @@ Materials spring_materials(const Effect& e, const char* key, double power,
   return {power_material(e.value(key), power, scale)};
 }
 
-/// Returns a spring in series with a slider that yields at the deformation `yield`.
-OpenSeesMaterial slider_material(double stiffness, double yield, const MaterialScale& scale) {
-  return {"ElasticPP",
-          {opensees_number(stiffness * scale.force * scale.stretch),
-           opensees_number(yield / scale.stretch)}};
+/// Returns a spring in series with a slider that yields at the deformation `yield`, 1 + asymmetry
+/// times that toward positive and 1 - asymmetry times toward negative deformation.
+OpenSeesMaterial slider_material(double stiffness, double yield, const MaterialScale& scale,
+                                 double asymmetry = 0) {
+  OpenSeesMaterial out{"ElasticPP",
+                       {opensees_number(stiffness * scale.force * scale.stretch),
+                        opensees_number((1 + asymmetry) * yield / scale.stretch)}};
+  if (asymmetry != 0) {
+    out.words.push_back(opensees_number(-(1 - asymmetry) * yield / scale.stretch));
+    out.words.push_back("0.0");  // strain at rest
+  }
+  return out;
 }
 
 Materials bilinear_materials(const Effect& e, const MaterialScale& scale, std::string& why) {
@@ -55,12 +62,13 @@ Materials bilinear_materials(const Effect& e, const MaterialScale& scale, std::s
     return {};
   }
   const double kh = e.value("kh_npm"), dy = e.value("dy_m"), spread = e.value("spread");
-  if (!(spread > 0)) return {slider_material(kh, dy, scale)};
+  const double asymmetry = e.value("asymmetry");
+  if (!(spread > 0)) return {slider_material(kh, dy, scale, asymmetry)};
   constexpr int kSprings = 10;  // as docs/effects.md says
   Materials out;
   for (int i = 0; i < kSprings; ++i)
-    out.push_back(
-        slider_material(kh / kSprings, dy * (1 + spread * ((2.0 * i + 1) / kSprings - 1)), scale));
+    out.push_back(slider_material(kh / kSprings, dy * (1 + spread * ((2.0 * i + 1) / kSprings - 1)),
+                                  scale, asymmetry));
   return out;
 }
 

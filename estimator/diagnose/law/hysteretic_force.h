@@ -26,10 +26,12 @@ struct HysteresisIndex {
 };
 
 /// Indices of the parameters of LawForm::sliders: springs of total stiffness kh in series with
-/// sliders. The sliders yield at deformations spread evenly over dy (1 +- spread). `loss` is
-/// optional: it reduces their strength with the work done, like strength_loss above.
+/// sliders. The sliders yield at deformations spread evenly over dy (1 +- spread), toward positive
+/// deformation at 1 + asymmetry times, toward negative at 1 - asymmetry times that. `loss` and
+/// `asymmetry` are optional. `loss` reduces their strength with the work done, like strength_loss
+/// above.
 struct SliderIndex {
-  enum : std::size_t { kh, dy, spread, loss };
+  enum : std::size_t { kh, dy, spread, loss, asymmetry };
   static constexpr int kCount = 10;
 };
 

@@ -80,12 +80,16 @@ LawStarts hardening(const LawScale& s) {
 
 LawStarts sliders(const LawScale& s) {
   LawStarts out{F::sliders, EffectKind::bilinear_hysteresis, {}};
-  for (const double spread : {0.4, 0.9})
+  struct Start {
+    double spread, asymmetry;
+  };
+  for (const Start& start : {Start{0.4, 0}, Start{0.9, 0}, Start{0.1, 0.5}, Start{0.1, -0.5}})
     for (const double yield : shrinking(1.5, 0.01, 0.62))
       out.shapes.push_back(
           {linear_parameter(1, 0.01 * s.stiffness),
            logarithmic_parameter(yield * s.deformation, 1e-4 * s.deformation, 5 * s.deformation),
-           bounded_parameter(spread, 0.02, 0, 0.98), held(0, 0.005, 0, kMaxLoss)});
+           bounded_parameter(start.spread, 0.02, 0, 0.98), held(0, 0.005, 0, kMaxLoss),
+           bounded_parameter(start.asymmetry, 0.02, -0.95, 0.95, start.asymmetry != 0)});
   return out;
 }
 
@@ -317,6 +321,7 @@ void free_shape(ModelEffect& effect) {
       break;
     case F::sliders:
       release(SliderIndex::loss);
+      release(SliderIndex::asymmetry);
       break;
     case F::asymptotic:
       release(AsymptoteIndex::loss);

@@ -88,6 +88,7 @@ void set_hysteresis(const ModelEffect& e, Effect& out) {
   if (e.form == LawForm::sliders) {
     out.set("spread", std::max(p[SliderIndex::spread], 1e-3));
     out.set("strength_loss", value_or(p, SliderIndex::loss, 0));
+    out.set("asymmetry", value_or(p, SliderIndex::asymmetry, 0));
   }
   if (e.form == LawForm::asymptotic) out.set("spread", spread_like(p[AsymptoteIndex::sharpness]));
   if (e.form == LawForm::masing) out.set("sharpness", p[MasingIndex::sharpness]);

@@ -65,8 +65,10 @@ LawForm form_of(const Effect& effect) {
     case bilinear_hysteresis:
       if (effect.value("peak_oriented") > 0) return LawForm::peak_oriented;
       if (effect.value("sharpness") > 0) return LawForm::masing;
-      return effect.value("spread") > 0 || effect.value("strength_loss") > 0 ? LawForm::sliders
-                                                                             : LawForm::hysteresis;
+      return effect.value("spread") > 0 || effect.value("strength_loss") > 0 ||
+                     effect.value("asymmetry") != 0
+                 ? LawForm::sliders
+                 : LawForm::hysteresis;
     case bouc_wen:
       return LawForm::hysteresis;
     case pinching:
@@ -155,8 +157,10 @@ void set_hysteresis(const Effect& effect, ModelEffect& e) {
     return;
   }
   if (e.form == LawForm::sliders) {
-    e.parameters = {sized(value("kh_npm")), logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
-                    bounded_parameter(value("spread"), 0.02, 0, 0.98), loss("strength_loss")};
+    e.parameters = {
+        sized(value("kh_npm")), logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
+        bounded_parameter(value("spread"), 0.02, 0, 0.98), loss("strength_loss"),
+        bounded_parameter(value("asymmetry"), 0.02, -0.95, 0.95, value("asymmetry") != 0)};
     return;
   }
   const bool bilinear = effect.kind == EffectKind::bilinear_hysteresis;

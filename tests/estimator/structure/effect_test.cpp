@@ -123,6 +123,11 @@ TEST(EffectProblems, NameTheKeyAndTheRule) {
   oriented.set("spread", 0.5);
   EXPECT_EQ(first_problem(oriented),
             "spread|bilinear_hysteresis.spread: must be 0 with peak_oriented");
+  oriented.set("spread", 0);
+  oriented.set("asymmetry", -0.2);
+  EXPECT_EQ(first_problem(oriented),
+            "asymmetry|bilinear_hysteresis.asymmetry: must be 0 with peak_oriented");
+  oriented.set("asymmetry", 0);
   oriented.set("peak_oriented", 0.5);
   EXPECT_EQ(first_problem(oriented),
             "peak_oriented|bilinear_hysteresis.peak_oriented: must be 0 or 1");

@@ -255,6 +255,9 @@ TEST(OpenSeesModel, RefusesByNameWhatOpenSeesLacks) {
   Effect oriented = example_effect(EffectKind::bilinear_hysteresis, table);
   oriented.set("peak_oriented", 1);
   EXPECT_EQ(problems_of({table.structure, table.theta, {}, {oriented}}).size(), 1u);
+  Effect unlike = example_effect(EffectKind::bilinear_hysteresis, table);
+  unlike.set("asymmetry", 0.5);
+  EXPECT_TRUE(problems_of({table.structure, table.theta, {}, {unlike}}).empty());
   const test::TableModel rigid = test::table_model(estimator::FloorModel::rigid);
   for (const EffectKind kind : {EffectKind::base_rocking, EffectKind::floor_flexibility})
     EXPECT_EQ(problems_of({rigid.structure, rigid.theta, {}, {example_effect(kind, rigid)}}).size(),

@@ -223,6 +223,21 @@ TEST(Law, PeakOrientedYieldingMatchesTheSimulator) {
   }
 }
 
+TEST(Law, UnlikeYieldingMatchesTheSimulator) {
+  const VectorXd d = growing_cycles(800);
+  Effect effect = yielding();
+  for (const double spread : {0.0, 0.6}) {
+    effect.set("spread", spread);
+    effect.set("asymmetry", -0.5);
+    const VectorXd force =
+        force_over({LawForm::sliders, {kStiffness, kYields_m, spread, 0, -0.5}, 1, 1}, d);
+    EXPECT_LT((force - simulated_force(effect, d)).cwiseAbs().maxCoeff(),
+              0.01 * kStiffness * kYields_m);
+    EXPECT_NEAR(force.maxCoeff(), 0.5 * kStiffness * kYields_m, 1e-6);
+    EXPECT_NEAR(force.minCoeff(), -1.5 * kStiffness * kYields_m, 1e-6);
+  }
+}
+
 /// Soil: hyperbolic at first loading, and from a reversal toward its mirror image.
 TEST(Law, RoundYieldingDoublesItsFirstLoading) {
   VectorXd d(3);

@@ -129,6 +129,18 @@ TEST(CatalogueForm, SharpnessSurvivesTheRoundTrip) {
   }
 }
 
+TEST(CatalogueForm, UnlikeYieldingSurvivesTheRoundTrip) {
+  const Scene scene;
+  Effect effect = test::example_effect(EffectKind::bilinear_hysteresis, scene.model);
+  effect.set("spread", 0.3);
+  effect.set("asymmetry", -0.4);
+  const Effect back = scene.round_trip(effect);
+  for (const EffectParameter& p : describe(effect.kind).parameters)
+    EXPECT_NEAR(back.value(p.key), effect.value(p.key),
+                kRounding * (1 + std::abs(effect.value(p.key))))
+        << p.key;
+}
+
 TEST(CatalogueForm, PeakOrientedYieldingSurvivesTheRoundTrip) {
   const Scene scene;
   Effect effect = test::example_effect(EffectKind::bilinear_hysteresis, scene.model);
