@@ -6,9 +6,9 @@
 
 #include "estimator/numeric/kernels.h"
 #include "estimator/simulate/building_model.h"
-#include "estimator/simulate/element_law.h"
 #include "estimator/simulate/linear_building.h"
 #include "estimator/simulate/linear_response.h"
+#include "estimator/simulate/make_law.h"
 #include "estimator/simulate/nonlinear_building.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"

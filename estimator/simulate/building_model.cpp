@@ -8,7 +8,7 @@
 
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/solve.h"
-#include "estimator/simulate/element_law.h"
+#include "estimator/simulate/make_law.h"
 #include "estimator/simulate/random.h"
 #include "estimator/structure/matrices.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/simulate/element_law.h"
+#include "estimator/simulate/make_law.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::earthquake {

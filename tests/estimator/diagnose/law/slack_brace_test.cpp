@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/law/law.h"
-#include "estimator/simulate/element_law.h"
+#include "estimator/simulate/make_law.h"
 #include "tests/estimator/diagnose/effect_of.h"
 #include "tests/estimator/diagnose/small_building.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "estimator/simulate/element_law.h"
+#include "estimator/simulate/make_law.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "tests/support/example_effects.h"
 
 namespace framewatch::estimator {
-namespace element_law_test {
+namespace make_law_test {
 
 constexpr double kPeak_m = 6e-3;
 constexpr double kPeriod_s = 0.4;
@@ -204,5 +204,5 @@ TEST(ElementLaw, StiffnessFallsAtItsTime) {
   EXPECT_NEAR(drift.force(), -5e3 * 1e-3, 1e-9);
 }
 
-}  // namespace element_law_test
+}  // namespace make_law_test
 }  // namespace framewatch::estimator

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "estimator/simulate/element_law.h"
+#include "estimator/simulate/make_law.h"
 
 #include <algorithm>
 #include <array>
