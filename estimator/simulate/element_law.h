@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 namespace framewatch::estimator {
 
@@ -17,9 +18,10 @@ class ElementLaw {
                      std::span<double> /*z_rate*/) const {}
   /// Called before every step from time_s, where the deformation is d, to update the memory.
   virtual void begin_step(double /*time_s*/, double /*d*/) {}
-  /// Return and restore the memory; 0 when there are only the states.
-  virtual double remembered() const { return 0; }
-  virtual void remember(double) {}
+  /// Return and restore what begin_step() keeps from step to step. One 0 without memory, because
+  /// state files hold a value for every law.
+  virtual std::vector<double> memory() const { return {0.0}; }
+  virtual void remember(std::span<const double> /*memory*/) {}
   /// Return bounds of abs(df/dd), N/m, and abs(df/dv), N*s/m, for moderate abs(d) and abs(v); they
   /// determine the step.
   virtual double stiffness_bound() const { return 0; }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace framewatch::estimator {
 namespace {
@@ -24,8 +25,8 @@ class Bilinear : public ElementLaw {
   }
   void begin_step(double, double d) override { slider_ = d - std::clamp(d - slider_, -dy_, dy_); }
   double stiffness_bound() const override { return kh_; }
-  double remembered() const override { return slider_; }
-  void remember(double slider) override { slider_ = slider; }
+  std::vector<double> memory() const override { return {slider_}; }
+  void remember(std::span<const double> memory) override { slider_ = memory[0]; }
 
  private:
   double kh_, dy_;
@@ -179,12 +180,23 @@ class PeakOrientedYielding : public ElementLaw {
     }
   }
   double stiffness_bound() const override { return kh_; }
+  std::vector<double> memory() const override {
+    std::vector<double> out{now_.d, now_.z, direction_};
+    for (const Side& side : sides_) out.insert(out.end(), {side.peak, side.turn.d, side.turn.z});
+    return out;
+  }
+  void remember(std::span<const double> memory) override {
+    now_ = {memory[0], memory[1]};
+    direction_ = memory[2];
+    for (std::size_t i = 0; i < sides_.size(); ++i)
+      sides_[i] = {memory[3 + 3 * i], {memory[4 + 3 * i], memory[5 + 3 * i]}};
+  }
 
  private:
   struct Point {
     double d, z;
   };
-  static constexpr Point kNone{-1e300, 0};
+  static constexpr Point kNone{-1e6, 0};  // m, below every deformation
   /// Deformations and z are positive toward the side.
   struct Side {
     double peak = 0;     ///< largest deformation so far
@@ -228,6 +240,11 @@ class SlackBrace : public ElementLaw {
     down_ = std::max(down_, -d - dy_);
   }
   double stiffness_bound() const override { return kh_; }
+  std::vector<double> memory() const override { return {up_, down_}; }
+  void remember(std::span<const double> memory) override {
+    up_ = memory[0];
+    down_ = memory[1];
+  }
 
  private:
   double kh_, dy_, up_, down_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "estimator/numeric/eigenvalues.h"
@@ -167,17 +169,27 @@ void NonlinearBuilding::set_state(const Eigen::VectorXd& disp_rel, const Eigen::
 std::vector<double> NonlinearBuilding::motion() const {
   std::vector<double> out(state_.begin(), state_.end());
   out.insert(out.end(), z_.begin(), z_.end());
-  for (const PlacedLaw& p : laws_) out.push_back(p.law->remembered());
+  for (const PlacedLaw& p : laws_) {
+    const std::vector<double> memory = p.law->memory();
+    out.insert(out.end(), memory.begin(), memory.end());
+  }
   return out;
 }
 
 bool NonlinearBuilding::resume(const std::vector<double>& motion) {
   const auto states = static_cast<std::size_t>(state_.size());
   const auto inner = static_cast<std::size_t>(z_.size());
-  if (motion.size() != states + inner + laws_.size()) return false;
+  std::vector<std::size_t> memories;
+  for (const PlacedLaw& p : laws_) memories.push_back(p.law->memory().size());
+  if (motion.size() != std::accumulate(memories.begin(), memories.end(), states + inner))
+    return false;
   std::copy_n(motion.begin(), states, state_.begin());
   std::copy_n(motion.begin() + static_cast<std::ptrdiff_t>(states), inner, z_.begin());
-  for (std::size_t i = 0; i < laws_.size(); ++i) laws_[i].law->remember(motion[states + inner + i]);
+  std::span<const double> left = std::span(motion).subspan(states + inner);
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    laws_[i].law->remember(left.first(memories[i]));
+    left = left.subspan(memories[i]);
+  }
   update_accel();
   return true;
 }

@@ -316,6 +316,33 @@ TEST(NonlinearBuilding, AHarmonicForceGivesTheClosedForm) {
   EXPECT_NEAR(peak, force / std::hypot(k - 2 * w * w, c * w), 1e-4 * peak);
 }
 
+std::vector<Effect> effects_with_memory(const test::TableModel& m) {
+  using enum EffectKind;
+  std::vector<Effect> out{test::example_effect(bouc_wen, m), test::example_effect(pinching, m)};
+  out.back().set("slack", 1);
+  for (const char* key : {"spread", "sharpness", "peak_oriented"}) {
+    out.push_back(test::example_effect(bilinear_hysteresis, m));
+    out.back().set(key, 1);
+  }
+  out.push_back(test::example_effect(bilinear_hysteresis, m));
+  return out;
+}
+
+TEST(NonlinearBuilding, ContinuesFromItsMotionBitByBit) {
+  const test::TableModel m = test::table_model();
+  for (const Effect& effect : effects_with_memory(m)) {
+    NonlinearBuilding whole(m.structure, m.table(), m.theta, {effect}, kStep_s);
+    const std::vector<double> rest = whole.motion();
+    const Eigen::MatrixXd first = shake(whole);
+    NonlinearBuilding resumed(m.structure, m.table(), m.theta, {effect}, kStep_s);
+    ASSERT_TRUE(resumed.resume(whole.motion())) << name_of(effect.kind);
+    EXPECT_EQ(shake(resumed), shake(whole)) << name_of(effect.kind);
+    EXPECT_FALSE(resumed.resume({1, 2, 3}));
+    ASSERT_TRUE(resumed.resume(rest));
+    EXPECT_EQ(shake(resumed), first) << name_of(effect.kind) << " from rest";
+  }
+}
+
 TEST(BuildingModel, DetectsAnUnstableBuilding) {
   const test::TableModel m = test::table_model();
   Effect heavy = test::example_effect(EffectKind::p_delta, m);
