@@ -169,10 +169,9 @@ class PeakOrientedYielding : public ElementLaw {
   void begin_step(double, double d) override {
     if (d == now_.d) return;
     const double to = d > now_.d ? 1 : -1;
-    if (to != direction_) mark_turn(sides_[to > 0 ? 1 : 0], -to);
+    mark_turn(sides_[to > 0 ? 1 : 0], -to);
     const double z = z_at(d);
     now_ = {d, z};
-    direction_ = to;
     for (const double of : {1.0, -1.0}) {
       Side& side = sides_[of > 0 ? 0 : 1];
       side.peak = std::max(side.peak, of * d);
@@ -181,15 +180,14 @@ class PeakOrientedYielding : public ElementLaw {
   }
   double stiffness_bound() const override { return kh_; }
   std::vector<double> memory() const override {
-    std::vector<double> out{now_.d, now_.z, direction_};
+    std::vector<double> out{now_.d, now_.z};
     for (const Side& side : sides_) out.insert(out.end(), {side.peak, side.turn.d, side.turn.z});
     return out;
   }
   void remember(std::span<const double> memory) override {
     now_ = {memory[0], memory[1]};
-    direction_ = memory[2];
     for (std::size_t i = 0; i < sides_.size(); ++i)
-      sides_[i] = {memory[3 + 3 * i], {memory[4 + 3 * i], memory[5 + 3 * i]}};
+      sides_[i] = {memory[2 + 3 * i], {memory[3 + 3 * i], memory[4 + 3 * i]}};
   }
 
  private:
@@ -223,7 +221,6 @@ class PeakOrientedYielding : public ElementLaw {
 
   double kh_, dy_, unloading_;
   Point now_{0, 0};
-  double direction_ = 0;
   std::array<Side, 2> sides_;
 };
 

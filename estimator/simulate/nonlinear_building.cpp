@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -179,16 +178,14 @@ std::vector<double> NonlinearBuilding::motion() const {
 bool NonlinearBuilding::resume(const std::vector<double>& motion) {
   const auto states = static_cast<std::size_t>(state_.size());
   const auto inner = static_cast<std::size_t>(z_.size());
-  std::vector<std::size_t> memories;
-  for (const PlacedLaw& p : laws_) memories.push_back(p.law->memory().size());
-  if (motion.size() != std::accumulate(memories.begin(), memories.end(), states + inner))
-    return false;
+  if (motion.size() != this->motion().size()) return false;
   std::copy_n(motion.begin(), states, state_.begin());
   std::copy_n(motion.begin() + static_cast<std::ptrdiff_t>(states), inner, z_.begin());
   std::span<const double> left = std::span(motion).subspan(states + inner);
-  for (std::size_t i = 0; i < laws_.size(); ++i) {
-    laws_[i].law->remember(left.first(memories[i]));
-    left = left.subspan(memories[i]);
+  for (const PlacedLaw& p : laws_) {
+    const std::size_t size = p.law->memory().size();
+    p.law->remember(left.first(size));
+    left = left.subspan(size);
   }
   update_accel();
   return true;

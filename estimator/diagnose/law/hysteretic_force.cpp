@@ -242,10 +242,8 @@ double PeakOriented::at(double x) const {
 void PeakOriented::move(double x) {
   if (x == x_) return;
   const double direction = x > x_ ? 1.0 : -1.0, now = at(x);
-  if (Side& left = side(-direction); direction == -direction_) {
-    const double turn = -direction * x_;
-    if (!left.turned || turn >= left.x) left = {left.peak, true, turn, -direction * z_};
-  }
+  if (Side& left = side(-direction); !left.turned || -direction * x_ >= left.x)
+    left = {left.peak, true, -direction * x_, -direction * z_};
   for (const double to : {1.0, -1.0}) {
     Side& of = side(to);
     of.turned = of.turned && to * now > 0 && to * x < of.x;
@@ -253,7 +251,6 @@ void PeakOriented::move(double x) {
   }
   x_ = x;
   z_ = now;
-  direction_ = direction;
 }
 
 double slider_force(const LawValues& values, const std::vector<double>& at, double d, double work) {

@@ -89,7 +89,7 @@ class PeakOriented {
   const Side& side(double direction) const { return sides_[direction > 0 ? 0 : 1]; }
   double unloading_slope(const Side& side) const;
 
-  double unloading_, x_ = 0, z_ = 0, direction_ = 0;
+  double unloading_, x_ = 0, z_ = 0;
   std::array<Side, 2> sides_;
 };
 
