@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <initializer_list>
 
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/structure.h"
@@ -285,28 +286,28 @@ class Checker {
     }
   }
 
-  void check_peak_oriented() {
+  void check_zero(std::initializer_list<std::string_view> keys, std::string_view with) {
+    for (const std::string_view key : keys)
+      if (effect_.value(key) != 0) add(key, "must be 0 with " + std::string(with));
+  }
+
+  void check_yielding() {
+    constexpr double kRoundest = 0.2;
+    const double sharpness = effect_.value("sharpness");
+    if (sharpness > 0 && sharpness < kRoundest) add("sharpness", "must be 0 or at least 0.2");
+    if (sharpness > 0) check_zero({"spread", "strength_loss", "asymmetry"}, "sharpness");
     const bool oriented = effect_.value("peak_oriented") == 1;
     if (!oriented && effect_.value("peak_oriented") != 0) add("peak_oriented", "must be 0 or 1");
     if (!oriented && effect_.value("unloading") > 0)
       add("unloading", "must be 0 without peak_oriented");
     if (oriented)
-      for (const std::string_view key : {"spread", "strength_loss", "sharpness", "asymmetry"})
-        if (effect_.value(key) != 0) add(key, "must be 0 with peak_oriented");
+      check_zero({"spread", "strength_loss", "sharpness", "asymmetry"}, "peak_oriented");
   }
 
   void check_together() {
     if (effect_.kind == EffectKind::one_sided_gap && std::abs(effect_.value("side")) != 1)
       add("side", "must be 1 or -1");
-    constexpr double kRoundest = 0.2;
-    const bool round =
-        effect_.kind == EffectKind::bilinear_hysteresis && effect_.value("sharpness") > 0;
-    if (round && effect_.value("sharpness") < kRoundest)
-      add("sharpness", "must be 0 or at least 0.2");
-    if (round)
-      for (const std::string_view key : {"spread", "strength_loss", "asymmetry"})
-        if (effect_.value(key) != 0) add(key, "must be 0 with sharpness");
-    if (effect_.kind == EffectKind::bilinear_hysteresis) check_peak_oriented();
+    if (effect_.kind == EffectKind::bilinear_hysteresis) check_yielding();
     if (effect_.kind == EffectKind::unmeasured_force &&
         effect_.value("low_hz") >= effect_.value("high_hz"))
       add("low_hz", "must be below high_hz");

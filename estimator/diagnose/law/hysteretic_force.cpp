@@ -82,8 +82,8 @@ double limit_of(const LawValues& values, std::size_t slider, double weaker) {
   return values.p[S::dy] * (1 + values.p[S::spread] * place) / weaker;
 }
 
-/// Returns the force of one slider, over its stiffness. limit: where it yields.
-double slid(const LawValues& values, double stretch, double limit) {
+/// Returns how far the spring of one slider is stretched, if the slider yields at this limit.
+double spring_stretch(const LawValues& values, double stretch, double limit) {
   const double asymmetry = value_or(values.p, S::asymmetry, 0);
   return std::clamp(stretch, -limit * (1 - asymmetry), limit * (1 + asymmetry));
 }
@@ -257,14 +257,14 @@ double slider_force(const LawValues& values, const std::vector<double>& at, doub
   const double weaker = weaker_of(values, work);
   double sum = 0;
   for (std::size_t i = 0; i < at.size(); ++i)
-    sum += slid(values, d - at[i], limit_of(values, i, weaker));
+    sum += spring_stretch(values, d - at[i], limit_of(values, i, weaker));
   return sum / S::kCount;
 }
 
 void move_sliders(const LawValues& values, std::vector<double>& at, double d, double work) {
   const double weaker = weaker_of(values, work);
   for (std::size_t i = 0; i < at.size(); ++i)
-    at[i] = d - slid(values, d - at[i], limit_of(values, i, weaker));
+    at[i] = d - spring_stretch(values, d - at[i], limit_of(values, i, weaker));
 }
 
 }  // namespace framewatch::estimator

@@ -98,6 +98,14 @@ TEST(CatalogueForm, SignsSurviveTheRoundTrip) {
   }
 }
 
+void expect_round_trip(const Scene& scene, const Effect& effect) {
+  const Effect back = scene.round_trip(effect);
+  for (const EffectParameter& p : describe(effect.kind).parameters)
+    EXPECT_NEAR(back.value(p.key), effect.value(p.key),
+                kRounding * (1 + std::abs(effect.value(p.key))))
+        << name_of(effect.kind) << " " << p.key;
+}
+
 TEST(CatalogueForm, SaturationSurvivesTheRoundTrip) {
   const Scene scene;
   using enum EffectKind;
@@ -109,11 +117,8 @@ TEST(CatalogueForm, SaturationSurvivesTheRoundTrip) {
         effect.set("exponent", shape + 1);
       else
         effect.set("shape", shape);
-      const Effect back = scene.round_trip(effect);
-      for (const EffectParameter& p : describe(kind).parameters)
-        EXPECT_NEAR(back.value(p.key), effect.value(p.key),
-                    kRounding * (1 + std::abs(effect.value(p.key))))
-            << name_of(kind) << " " << p.key << " " << shape;
+      SCOPED_TRACE(shape);
+      expect_round_trip(scene, effect);
     }
 }
 
@@ -122,10 +127,7 @@ TEST(CatalogueForm, SharpnessSurvivesTheRoundTrip) {
   Effect effect = test::example_effect(EffectKind::bilinear_hysteresis, scene.model);
   for (const double sharpness : {0.7, 1.0, 8.0}) {
     effect.set("sharpness", sharpness);
-    const Effect back = scene.round_trip(effect);
-    for (const EffectParameter& p : describe(effect.kind).parameters)
-      EXPECT_NEAR(back.value(p.key), effect.value(p.key), kRounding * (1 + effect.value(p.key)))
-          << p.key;
+    expect_round_trip(scene, effect);
   }
 }
 
@@ -134,11 +136,7 @@ TEST(CatalogueForm, UnlikeYieldingSurvivesTheRoundTrip) {
   Effect effect = test::example_effect(EffectKind::bilinear_hysteresis, scene.model);
   effect.set("spread", 0.3);
   effect.set("asymmetry", -0.4);
-  const Effect back = scene.round_trip(effect);
-  for (const EffectParameter& p : describe(effect.kind).parameters)
-    EXPECT_NEAR(back.value(p.key), effect.value(p.key),
-                kRounding * (1 + std::abs(effect.value(p.key))))
-        << p.key;
+  expect_round_trip(scene, effect);
 }
 
 TEST(CatalogueForm, PeakOrientedYieldingSurvivesTheRoundTrip) {
@@ -147,10 +145,7 @@ TEST(CatalogueForm, PeakOrientedYieldingSurvivesTheRoundTrip) {
   effect.set("peak_oriented", 1);
   for (const double unloading : {0.0, 0.5}) {
     effect.set("unloading", unloading);
-    const Effect back = scene.round_trip(effect);
-    for (const EffectParameter& p : describe(effect.kind).parameters)
-      EXPECT_NEAR(back.value(p.key), effect.value(p.key), kRounding * (1 + effect.value(p.key)))
-          << p.key;
+    expect_round_trip(scene, effect);
   }
 }
 
