@@ -52,6 +52,8 @@ void fix_exponent(EffectKind kind, ModelEffect& effect) {
 constexpr int kJudgedSteps = 6;
 constexpr double kNothing = 0.98;  ///< gap with an effect over the one without
 constexpr int kRoughSteps = 4;
+/// Cost without an effect after kRoughSteps over that with it, above which the effect is needed.
+constexpr double kNeeded = 4;
 /// Gap with an effect over the one without after kRoughSteps, below which the effect reduces the
 /// gap.
 constexpr double kClearly = 0.75;
@@ -137,16 +139,63 @@ bool is_redundant(const Fitter& fitter, const Model& with, const Model& without,
   return gap_ratio(fitter, with, without, parallel) > kNothing;
 }
 
+Model without_effects(const Model& model, const std::vector<FoundEffect>& effects,
+                      std::size_t first, std::size_t end, const Plant& plant) {
+  Model out = model;
+  const Model none = initial_model(plant);
+  std::vector<int> leaving;
+  for (std::size_t i = first; i < end; ++i) {
+    const FoundEffect& e = effects[i];
+    const int axis = e.chosen.place.channel;
+    if (e.index >= 0) {
+      leaving.push_back(e.index);
+    } else if (e.ramp_mps3.empty()) {
+      std::erase(out.free_gain, axis);
+      std::erase(out.free_clock, axis);
+      out.gain[axis] = none.gain[axis];
+      out.clock_s[axis] = none.clock_s[axis];
+    }
+  }
+  std::sort(leaving.rbegin(), leaving.rend());
+  for (const int index : leaving) out.effects.erase(out.effects.begin() + index);
+  return out;
+}
+
+void erase_effect(std::size_t i, std::vector<FoundEffect>& effects) {
+  const int index = effects[i].index;
+  effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(i));
+  if (index < 0) return;
+  for (FoundEffect& e : effects) e.index -= e.index > index;
+}
+
+void remove_not_needed(const Fitter& fitter, const Parallel& parallel,
+                       std::vector<FoundEffect>& effects, FitResult& now) {
+  while (effects.size() > 1) {
+    std::vector<FitResult> less(effects.size());
+    run_all(parallel, static_cast<int>(effects.size()), [&](int i) {
+      const auto at = static_cast<std::size_t>(i);
+      const Model model = without_effects(now.model, effects, at, at + 1, fitter.plant());
+      const FitResult rough = fitter.fit(model, now.motion, thorough(model, kRoughSteps));
+      if (rough.good && rough.cost < kNeeded * now.cost)
+        less[at] = fit_to_the_end(fitter, rough.model, rough.motion);
+    });
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < less.size(); ++i)
+      if (less[i].good && (!less[best].good || less[i].cost < less[best].cost)) best = i;
+    if (!less[best].good || less[best].cost > now.cost + kMinGain) return;
+    now = std::move(less[best]);
+    erase_effect(best, effects);
+  }
+}
+
 void remove_earlier_redundant(const Fitter& fitter, std::vector<FoundEffect>& effects,
                               FitResult& now) {
   for (std::size_t i = 0; i + 1 < effects.size(); ++i) {
     const int index = effects[i].index;
     if (index < 0 || now.model.effects[static_cast<std::size_t>(index)].element_law()) continue;
-    Model start = now.model;
-    start.effects.erase(start.effects.begin() + index);
-    if (!replaced_by(fitter, start, now)) continue;
-    effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(i));
-    for (FoundEffect& e : effects) e.index -= e.index > index;
+    if (!replaced_by(fitter, without_effects(now.model, effects, i, i + 1, fitter.plant()), now))
+      continue;
+    erase_effect(i, effects);
     effects.back().chosen.model = now.model;
     --i;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,6 +49,19 @@ double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
 /// the free run's motion.
 bool is_redundant(const Fitter& fitter, const Model& with, const Model& without,
                   const Parallel& parallel);
+
+/// Returns the model without the effects `first` to `end` - 1 of the list.
+Model without_effects(const Model& model, const std::vector<FoundEffect>& effects,
+                      std::size_t first, std::size_t end, const Plant& plant);
+
+/// Removes effect i, which the model no longer has, from the list.
+void erase_effect(std::size_t i, std::vector<FoundEffect>& effects);
+
+/// Removes every effect without which the others fit as well, those first without which they fit
+/// best. An effect that was found beside an unfinished fit, or that only led to a better one, is
+/// not needed any more. Keeps at least one effect.
+void remove_not_needed(const Fitter& fitter, const Parallel& parallel,
+                       std::vector<FoundEffect>& effects, FitResult& now);
 
 /// Removes masses, springs and dampers that the last of the effects makes redundant.
 void remove_earlier_redundant(const Fitter& fitter, std::vector<FoundEffect>& effects,

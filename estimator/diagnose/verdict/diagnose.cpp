@@ -171,6 +171,7 @@ class Diagnoser {
     search_.keep(now);
     find_combined_laws(now);
     if (!out_.effects.empty() && !several) {
+      remove_not_needed(fitter_, options_.parallel, out_.effects, now);
       drop_redundant(now);
       polish(now);
     }
@@ -180,16 +181,16 @@ class Diagnoser {
     return fitter_.fit(model, motion, thorough(model, steps));
   }
 
-  /// Removes effects of low confidence whose removal leaves fit or gap as good.
+  /// Removes effects in doubt, the last one first, whose removal leaves the gap as good.
   void drop_redundant(FitResult& now) {
     while (out_.effects.size() > 1) {
       const bool fits = search_.ratio(now) < 1 + chance_of(fitter_, now.model);
       if (fits && out_.effects.back().confidence > kDoubtful) return;
-      const Model less = with_first(now.model, out_.effects, out_.effects.size() - 1, plant_);
+      const std::size_t last = out_.effects.size() - 1;
+      const Model less = without_effects(now.model, out_.effects, last, last + 1, plant_);
       FitResult fitted = fit_to_the_end(fitter_, less, now.motion);
-      if (!fitted.good) return;
-      const bool redundant = fitted.cost < now.cost + kMinGain;
-      if (!redundant && !is_redundant(fitter_, now.model, fitted.model, options_.parallel)) return;
+      if (!fitted.good || !is_redundant(fitter_, now.model, fitted.model, options_.parallel))
+        return;
       out_.effects.pop_back();
       now = std::move(fitted);
     }

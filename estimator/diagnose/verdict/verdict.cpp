@@ -9,6 +9,7 @@
 #include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/model/bias.h"
 #include "estimator/diagnose/propose/law_starts.h"
+#include "estimator/diagnose/trials/refit.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
 
 namespace framewatch::estimator {
@@ -69,28 +70,6 @@ std::vector<RecordSegment> training(const Fitter& fitter, std::size_t holdout_fr
 
 }  // namespace
 
-Model with_first(const Model& model, const std::vector<FoundEffect>& effects, std::size_t first,
-                 const Plant& plant) {
-  Model out = model;
-  const Model none = initial_model(plant);
-  std::vector<int> leaving;
-  for (std::size_t i = first; i < effects.size(); ++i) {
-    const FoundEffect& e = effects[i];
-    const int axis = e.chosen.place.channel;
-    if (e.index >= 0) {
-      leaving.push_back(e.index);
-    } else if (e.ramp_mps3.empty()) {
-      std::erase(out.free_gain, axis);
-      std::erase(out.free_clock, axis);
-      out.gain[axis] = none.gain[axis];
-      out.clock_s[axis] = none.clock_s[axis];
-    }
-  }
-  std::sort(leaving.rbegin(), leaving.rend());
-  for (const int index : leaving) out.effects.erase(out.effects.begin() + index);
-  return out;
-}
-
 namespace {
 
 /// Returns starts of the model with the first `count` of the effects.
@@ -98,7 +77,8 @@ std::vector<Model> starts_with(const std::vector<Model>& found, const Diagnosis&
                                std::size_t count, const Plant& plant) {
   std::vector<Model> out;
   for (const Model& model : found) {
-    out.push_back(with_first(model, diagnosis.effects, count, plant));
+    out.push_back(
+        without_effects(model, diagnosis.effects, count, diagnosis.effects.size(), plant));
     // Stiffnesses that compensate for a missing effect may be far off, and so may an effect fitted
     // together with the others.
     out.push_back(out.back());

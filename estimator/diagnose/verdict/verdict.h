@@ -23,10 +23,6 @@ bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_bef
 /// thousandth leaves such a misfit in strong motion, but no gap. Needs Diagnosis::after.
 void mark_approximate(const Fitter& fitter, Diagnosis& out);
 
-/// Returns the model without the effects from `first` on.
-Model with_first(const Model& model, const std::vector<FoundEffect>& effects, std::size_t first,
-                 const Plant& plant);
-
 /// Sets Diagnosis::before and after, and before and after of its effects in their order: the gaps
 /// of models fitted by judged_fit() to the segments before `options.holdout_from`.
 void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -77,6 +78,52 @@ TEST(DeclaredModel, ALawHasTheExponentOfItsName) {
   EXPECT_DOUBLE_EQ(law.parameters[1].plain(), 3);
   EXPECT_FALSE(law.parameters[1].free);
   EXPECT_NEAR(law.parameters[0].plain() / std::pow(law.deformation, 3) / kSize_npm3, 1, kSizeOff);
+}
+
+constexpr double kCubic_npm3 = 1e10;
+
+/// Returns a fit with the effects of `named`, which it puts into `found`.
+FitResult fit_with(const Recorded& recorded, const std::vector<Effect>& named,
+                   std::vector<FoundEffect>& found) {
+  Model start = initial_model(recorded.plant);
+  start.theta = recorded.small.truth;
+  found = add_known(recorded.plant, recorded.segments, named, start);
+  return fit_to_the_end(recorded.fitter, start, {});
+}
+
+TEST(RemoveNotNeeded, RemovesTheEffectsThatAreNotInTheRecords) {
+  const Effect cubic =
+      test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {kCubic_npm3});
+  const Recorded recorded(test::records_with({cubic}, {1, 2}));
+  std::vector<FoundEffect> found;
+  FitResult now =
+      fit_with(recorded,
+               {test::effect_of(EffectKind::quadratic_stiffness, test::in_frame(2), {1e6}), cubic,
+                test::effect_of(EffectKind::time_shift, test::at_channel(0), {1e-4})},
+               found);
+  const double cost = now.cost;
+  remove_not_needed(recorded.fitter, {}, found, now);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].chosen.kind, EffectKind::cubic_stiffness);
+  ASSERT_EQ(now.model.effects.size(), 1U);
+  ASSERT_EQ(found[0].index, 0);
+  EXPECT_EQ(now.model.effects[0].place, test::in_frame(1));
+  EXPECT_TRUE(now.model.free_clock.empty());
+  EXPECT_LT(now.cost, cost + 2 * kMinGain);
+}
+
+TEST(RemoveNotNeeded, KeepsTheEffectsOfTheRecords) {
+  const std::vector<Effect> both{
+      test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {kCubic_npm3}),
+      test::effect_of(EffectKind::gain_error, test::at_channel(1), {kGain})};
+  std::vector<Eigen::MatrixXd> records = test::records_with({both[0]}, {1, 2});
+  for (Eigen::MatrixXd& record : records) record.col(1) *= 1 + kGain;
+  const Recorded recorded(records);
+  std::vector<FoundEffect> found;
+  FitResult now = fit_with(recorded, both, found);
+  remove_not_needed(recorded.fitter, {}, found, now);
+  EXPECT_EQ(found.size(), 2U);
+  EXPECT_EQ(now.model.free_gain, std::vector<int>{1});
 }
 
 }  // namespace refit_test
