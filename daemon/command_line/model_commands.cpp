@@ -213,6 +213,12 @@ void add_diagnose(CommandList& commands) {
                       "--train and --holdout");
   command->add_option("--out", arguments.out, "output folder")->required()->type_name("DIR");
   command->add_option("--without", arguments.without, "names of effects to leave out");
+  command
+      ->add_option("--setting", arguments.settings,
+                   "change a number of the search, such as min_gain=100, to see if the result "
+                   "depends\non it; docs/lab/sensitivity.md lists them")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
   command->add_option("--force", arguments.component.force,
                       "component test: column with the force on floor 1, N");
   command->add_flag("--displacement", arguments.component.displacement,

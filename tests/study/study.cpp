@@ -14,6 +14,7 @@
 #include <fmt/core.h>
 
 #include "tests/study/practice.h"
+#include "tests/study/sensitivity.h"
 #include "tests/study/study_case.h"
 #include "tests/study/study_score.h"
 
@@ -27,6 +28,7 @@ constexpr const char* kUsage =
        diagnose_study practice DIR [--data FOLDER]
        diagnose_study run DIR --program FRAMEWATCH [--taken-out N]
        diagnose_study table DIR
+       diagnose_study sensitivity DIR --program FRAMEWATCH [--setting NAME]
 
 generate  writes cases: config.toml, train.csv.gz, holdout.csv.gz, truth.json. Each effect N times (1)
           per building, noise 1, 2, 5 % in turn. Groups: catalogue, nothing (10 N per building),
@@ -39,6 +41,8 @@ run       runs `framewatch diagnose` on every case without a diagnosis, and the 
           effect and building again with the effect removed from the catalogue
 table     prints rates, confusion, gaps and requirements of all finished cases as Markdown; exits
           with 1 if there is no case or a requirement is missed
+sensitivity  diagnoses every case with each number of the search (or that called NAME) half and twice
+          as large, and prints which results differ from the usual ones as Markdown
 )";
 
 struct Arguments {
@@ -228,6 +232,21 @@ int table(const Arguments& a) {
   return good && !outcomes.empty() ? 0 : 1;
 }
 
+int sensitivity(const Arguments& a) {
+  const std::string program = a.text("--program", "framewatch"), only = a.text("--setting", "");
+  const std::vector<std::string> all = cases(a.directory);
+  const std::vector<ChangedSetting> changed = changed_settings(only);
+  if (all.empty()) fmt::print(stderr, "no cases in {}\n", a.directory);
+  if (changed.empty()) fmt::print(stderr, "the search has no number called {}\n", only);
+  if (all.empty() || changed.empty()) return 2;
+  for (const std::string& directory : all) diagnose_case(program, directory, "out", "");
+  for (const ChangedSetting& one : changed)
+    for (const std::string& directory : all)
+      diagnose_case(program, directory, one.text(), "--setting " + one.text());
+  fmt::print("{}", sensitivity_table(all, changed));
+  return 0;
+}
+
 }  // namespace
 
 int main_of(int argc, char** argv) {
@@ -241,9 +260,9 @@ int main_of(int argc, char** argv) {
   bool good = argc >= 3 && argc % 2 == 1;
   for (int i = 3; i + 1 < argc; i += 2) {
     const std::string key = argv[i];
-    const std::vector<std::string> known{"--each",      "--seed",    "--seconds",     "--building",
-                                         "--group",     "--effect",  "--program",     "--data",
-                                         "--taken-out", "--flicker", "--mass-damping"};
+    const std::vector<std::string> known{"--each",      "--seed",    "--seconds",      "--building",
+                                         "--group",     "--effect",  "--program",      "--data",
+                                         "--taken-out", "--flicker", "--mass-damping", "--setting"};
     good = good && std::find(known.begin(), known.end(), key) != known.end();
     a.options[key] = argv[i + 1];
   }
@@ -251,6 +270,7 @@ int main_of(int argc, char** argv) {
   if (good && a.action == "practice") return practice(a);
   if (good && a.action == "run") return run(a);
   if (good && a.action == "table") return table(a);
+  if (good && a.action == "sensitivity") return sensitivity(a);
   fmt::print(stderr, "{}", kUsage);
   return 2;
 }

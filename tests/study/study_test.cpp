@@ -2,12 +2,16 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "daemon/config/config.h"
 #include "tests/study/practice.h"
+#include "tests/study/sensitivity.h"
 #include "tests/study/study_case.h"
 #include "tests/study/study_record.h"
 #include "tests/study/study_score.h"
@@ -230,6 +234,50 @@ TEST(StudyScore, ScoresNamePlaceAndGap) {
 
   const std::string table = tables({right, elsewhere});
   EXPECT_NE(table.find("| bouc_wen | 2 | 1 | 1 |"), std::string::npos) << table;
+}
+
+/// Writes a case that hides a drop, and the diagnosis of its folder.
+void write_scored(const std::string& directory, const std::string& folder, const char* effects) {
+  std::filesystem::create_directories(directory + "/" + folder);
+  test::write_file(directory + "/truth.json",
+                   R"({"study": {"name": "stiffness_drop"}, "effects": [{"effect":
+                       "stiffness_drop", "location": {"kind": "frame", "story": 1,
+                       "frame": "x1"}}]})");
+  test::write_file(directory + "/" + folder + "/diagnosis.json",
+                   std::string(R"({"verdict": "explained", "effects": [)") + effects + "]}");
+}
+
+TEST(Sensitivity, ChangesEveryNumberWithinItsRange) {
+  std::set<std::string> names;
+  for (const ChangedSetting& one : changed_settings("")) names.insert(one.name);
+  EXPECT_GT(names.size(), 70U);
+  const std::vector<ChangedSetting> share = changed_settings("explains");
+  ASSERT_EQ(share.size(), 2U);
+  EXPECT_EQ(share[0].text(), "explains=0.485");
+  EXPECT_EQ(share[1].text(), "explains=1") << "twice is more than everything";
+  EXPECT_EQ(changed_settings("adequate").size(), 2U);
+  EXPECT_TRUE(changed_settings("no_such_number").empty());
+}
+
+TEST(Sensitivity, TellsTheResultsThatAreNotTheUsualOnes) {
+  const test::TemporaryDirectory folder;
+  const char* right = R"({"effect": "stiffness_drop", "confidence": 0.99, "location":
+                          {"kind": "frame", "story": 1, "frame": "x1"}})";
+  const char* wrong = R"({"effect": "cubic_stiffness", "confidence": 0.99, "location":
+                          {"kind": "frame", "story": 1, "frame": "x1"}})";
+  const std::string directory = folder.path("case");
+  write_scored(directory, "out", right);
+  write_scored(directory, "pays=0.475", right);
+  write_scored(directory, "pays=1", wrong);
+  write_scored(directory, "leads=0.45", "");
+  const std::vector<std::string> all{directory};
+  EXPECT_EQ(sensitivity_table(all, changed_settings("pays")),
+            "| number | usual | half | twice |\n| --- | --- | --- | --- |\n"
+            "| `pays` | 0.95 | 0.475 | 1: stiffness_drop: cubic_stiffness, **confidently wrong** "
+            "|\n");
+  const std::string leads = sensitivity_table(all, changed_settings("leads"));
+  EXPECT_NE(leads.find("| 0.45: stiffness_drop: nothing | 1 (1 not run) |"), std::string::npos)
+      << leads;
 }
 
 }  // namespace

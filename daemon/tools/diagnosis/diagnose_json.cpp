@@ -190,17 +190,23 @@ Json parameters_of(const DiagnoseOutput& o) {
   return out;
 }
 
+/// Returns the numbers of the search that are not its defaults.
+Json changed_settings(const estimator::SearchSettings& settings) {
+  Json out = Json::object();
+  for (const estimator::SearchSetting& s : estimator::search_settings())
+    if (s.of(settings) != s.of({})) out[s.name] = s.of(settings);
+  return out;
+}
+
 Json provenance_of(const DiagnoseOutput& o) {
   Json files = Json::array();
   for (std::size_t r = 0; r < o.records.size(); ++r)
     files.push_back({{"file", o.records[r].path},
                      {"sha256", o.records[r].sha256},
                      {"use", r < o.holdout_from ? "train" : "holdout"}});
-  return {{"config", o.config.path},
-          {"config_sha256", o.config.sha256},
-          {"records", files},
-          {"version", FRAMEWATCH_VERSION},
-          {"command", "diagnose"}};
+  return {{"config", o.config.path}, {"config_sha256", o.config.sha256},
+          {"records", files},        {"version", FRAMEWATCH_VERSION},
+          {"command", "diagnose"},   {"settings", changed_settings(o.diagnosis.settings)}};
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "daemon/base/words.h"
 #include "daemon/tools/diagnosis/evidence_section.h"
 #include "daemon/tools/diagnosis/next_measurement.h"
+#include "daemon/tools/diagnosis/search_section.h"
 #include "daemon/tools/diagnosis/where_map.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/verdict/evidence.h"
@@ -251,7 +252,7 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
   const std::string title = "Diagnosis of " + o.plant.structure.name;
   body += "<h1>" + html_text(title) + "</h1>\n";
   body += force_section(o) + gap_section(o) + residual_section(o) + effects_section(o) +
-          where_section(o) + kind_section(o) + history_section(o);
+          where_section(o) + kind_section(o) + search_section(o) + history_section(o);
   return html_page(title, body + provenance(o));
 }
 

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "daemon/tools/diagnosis/diagnose_run.h"
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <limits>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "daemon/base/workers.h"
+#include "daemon/config/keys/suggest.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 #include "estimator/structure/effect.h"
 
@@ -25,6 +30,39 @@ std::vector<estimator::EffectKind> excluded_kinds(const std::vector<std::string>
       out.push_back(*kind);
     else
       problems.push_back(fmt::format("--without {}: no effect has this name", name));
+  }
+  return out;
+}
+
+/// Returns the number in `text`, or NaN if it holds anything else.
+double number_of(const std::string& text) {
+  double out = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, out);
+  return error == std::errc() && rest == end ? out : std::numeric_limits<double>::quiet_NaN();
+}
+
+estimator::SearchSettings settings_of(const std::vector<std::string>& given,
+                                      std::vector<std::string>& problems) {
+  estimator::SearchSettings out;
+  std::vector<std::string> names;
+  for (const estimator::SearchSetting& s : estimator::search_settings()) names.emplace_back(s.name);
+  for (const std::string& text : given) {
+    const std::string name = text.substr(0, text.find('='));
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) {
+      problems.push_back(fmt::format("--setting {}: the search has no number of this name{}", text,
+                                     did_you_mean(name, names)));
+      continue;
+    }
+    const estimator::SearchSetting& setting =
+        estimator::search_settings()[static_cast<std::size_t>(at - names.begin())];
+    const double value = number_of(text.substr(std::min(text.size(), name.size() + 1)));
+    if (!(value >= setting.low && value <= setting.high))
+      problems.push_back(fmt::format("--setting {}: must be NAME=VALUE with a value from {} to {}",
+                                     text, setting.low, setting.high));
+    else
+      setting.set(out, value);
   }
   return out;
 }
@@ -96,6 +134,7 @@ std::unique_ptr<DiagnosisRun> run_diagnosis(const Config& config, const Diagnose
   estimator::DiagnosisOptions options;
   options.holdout_from = a.event.empty() ? a.train.size() : 1;
   options.without = excluded_kinds(a.without, problems);
+  options.settings = settings_of(a.settings, problems);
   if (!(a.limit_s >= 0))
     problems.push_back(fmt::format("limit of the search: must be 0 or more, not {}", a.limit_s));
   std::vector<DiagnoseRecord> records = read_records(config, a, problems);

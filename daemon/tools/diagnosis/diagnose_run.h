@@ -22,7 +22,8 @@ struct DiagnoseArguments {
   std::string event;   ///< id of a gap event whose stored samples replace these files
   std::string design;  ///< folder with matrices of the design; empty: the configuration's
   std::string out;     ///< directory for diagnosis.json, report.html, model.toml
-  std::vector<std::string> without;  ///< names of effects to exclude
+  std::vector<std::string> without;   ///< names of effects to exclude
+  std::vector<std::string> settings;  ///< numbers of the search, NAME=VALUE
   estimator::ComponentTest component;
   int threads = 0;     ///< 0: as many as the machine has
   double limit_s = 0;  ///< of the diagnosis, in which it must end its search; 0: none

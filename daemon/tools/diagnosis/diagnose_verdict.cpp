@@ -237,7 +237,8 @@ std::string confidence_words(const DiagnoseOutput& o, const estimator::FoundEffe
     return out + ": " + listed(like) + (like.size() > 1 ? " fit" : " fits") + " as well";
   if (f.nearest) return out + ": it is the nearest law, and leaves more than it should";
   if (f.approximate) return out + ": more than noise is left, so its form may be another";
-  const std::vector<const estimator::Trial*> rivals = near_rivals(f, estimator::kEstablished);
+  const std::vector<const estimator::Trial*> rivals =
+      near_rivals(o.diagnosis.settings, f, estimator::kEstablished);
   if (rivals.empty()) return out + ": it was found only together with others";
   return out + fmt::format(": {} at {} is {:.0f} in log-likelihood behind",
                            spaced(rivals.front()->kind),

@@ -161,7 +161,7 @@ std::string for_effect(const DiagnoseOutput& o, const estimator::FoundEffect& f)
   if (grade_of(f) == estimator::Grade::established) return "";
   std::vector<NamedEffect> rivals;
   for (const EffectKind kind : f.like) rivals.push_back({kind, f.chosen.place});
-  for (const estimator::Trial* t : near_rivals(f, estimator::kEstablished))
+  for (const estimator::Trial* t : near_rivals(o.diagnosis.settings, f, estimator::kEstablished))
     rivals.push_back(named(*t));
   return between(o, named(f.chosen), rivals);
 }

@@ -59,8 +59,12 @@ FitOptions thorough(const Model& model, int max_steps) {
 }
 
 Fitter::Fitter(const Plant& plant, const std::vector<RecordSegment>& segments,
-               const Tolerances& tolerances, Parallel within)
-    : plant_(plant), segments_(segments), tolerances_(tolerances), within_(std::move(within)) {
+               const Tolerances& tolerances, Parallel within, const SearchSettings& settings)
+    : plant_(plant),
+      segments_(segments),
+      tolerances_(tolerances),
+      settings_(settings),
+      within_(std::move(within)) {
   for (const RecordSegment& s : segments) ratio_.push_back(steps_per_sample(plant, s.rate_hz));
 }
 

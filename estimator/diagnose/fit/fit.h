@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/fit/fit_columns.h"
+#include "estimator/diagnose/fit/search_settings.h"
 #include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
@@ -49,12 +50,12 @@ inline bool is_better(const FitResult& fit, const FitResult& other) {
 class Fitter {
  public:
   /// within: runs small tasks of a fit in parallel. Fits that run at the same time share it. Not
-  /// counted as progress.
+  /// counted as progress. settings: those of the search that uses the fitter.
   Fitter(const Plant& plant, const std::vector<RecordSegment>& segments,
-         const Tolerances& tolerances, Parallel within = {});
+         const Tolerances& tolerances, Parallel within = {}, const SearchSettings& settings = {});
   /// Returns a fitter of other segments. They must outlive it.
   Fitter with(const std::vector<RecordSegment>& segments) const {
-    return Fitter(plant_, segments, tolerances_, within_);
+    return Fitter(plant_, segments, tolerances_, within_, settings_);
   }
 
   FitResult fit(const Model& start, const std::vector<Eigen::MatrixXcd>& motion,
@@ -82,6 +83,7 @@ class Fitter {
   const Plant& plant() const { return plant_; }
   const std::vector<RecordSegment>& segments() const { return segments_; }
   const Tolerances& tolerances() const { return tolerances_; }
+  const SearchSettings& settings() const { return settings_; }
   const Parallel& within() const { return within_; }
   /// Returns the steps per sample of a record for laws driven by measured motion, or for a model's
   /// free runs.
@@ -97,6 +99,7 @@ class Fitter {
   const Plant& plant_;
   const std::vector<RecordSegment>& segments_;
   Tolerances tolerances_;
+  SearchSettings settings_;
   Parallel within_;
   std::vector<int> ratio_;
 };

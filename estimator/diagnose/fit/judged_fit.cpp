@@ -18,10 +18,6 @@ constexpr int kRounds = 6;  ///< in which the weights follow the gap
 constexpr double kMore =
     0.99;  ///< gap over that of the previous round, below which rounds continue
 constexpr double kLargest = 1;  ///< model error in the weights
-constexpr int kFirstSteps = 4;  ///< of every start, before the best is fitted further
-constexpr double kClose =
-    1.1;  ///< gap over the best one's, below which a start is fitted further too
-constexpr double kHonest = 0.97;  ///< gap with modal damping over that with dashpots only
 constexpr double kFewDashpots = 0.1, kUsualRatio = 0.005;
 constexpr double kSameGap = 1e-9;  ///< relative difference of gaps of one model
 constexpr double kSameEnd = 5e-3;  ///< relative difference of gaps of fits that ended at one place
@@ -62,8 +58,8 @@ void sort_starts(double same, std::vector<Start>& all) {
 }
 
 /// Removes starts whose gap is far above that of the first, the best.
-void keep_close(std::vector<Start>& sorted) {
-  const double limit = kClose * sorted.front().gap;
+void keep_close(double nearly_best, std::vector<Start>& sorted) {
+  const double limit = nearly_best * sorted.front().gap;
   sorted.erase(std::find_if(sorted.begin() + 1, sorted.end(),
                             [&](const Start& s) { return !(s.gap < limit); }),
                sorted.end());
@@ -103,11 +99,12 @@ Start with_free_ratios(const Fitter& fitter, int steps, const std::vector<Start>
   run_all(parallel, static_cast<int>(all.size()), [&](int i) {
     Start& one = all[static_cast<std::size_t>(i)];
     one.gap = rms_gap(fitter, one.model);
-    fit_free_run(fitter, kFirstSteps, one);
-    if (one.gap < kHonest * ends.front().gap) fit_to_the_end(fitter, steps, one);
+    fit_free_run(fitter, fitter.settings().rough_steps, one);
+    if (one.gap < fitter.settings().damping_pays * ends.front().gap)
+      fit_to_the_end(fitter, steps, one);
   });
   Start best = ends.front();
-  const double most = kHonest * best.gap;
+  const double most = fitter.settings().damping_pays * best.gap;
   for (Start& one : all)
     if (one.gap < std::min(most, best.gap)) best = std::move(one);
   return best;
@@ -164,21 +161,23 @@ JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int
   const FitResult noise = fitter.fit(first, {}, thorough(first, steps));
   const Model& fitted = noise.good ? noise.model : first;
   JudgedFit out{fitted, rms_gap(fitter, fitted), false};
-  out.near_noise = noise.good && noise.total_misfit() < kNearNoise * fitter.expected(noise.model);
+  out.near_noise = noise.good && noise.total_misfit() <
+                                     fitter.settings().near_noise * fitter.expected(noise.model);
   if (out.near_noise) return out;
 
   std::vector<Start> all{{out.model, out.gap}};
   for (const Model& model : starts) all.push_back({model, rms_gap(fitter, model)});
   sort_starts(kSameGap, all);
-  run_all(parallel, static_cast<int>(all.size()),
-          [&](int i) { fit_free_run(fitter, kFirstSteps, all[static_cast<std::size_t>(i)]); });
+  run_all(parallel, static_cast<int>(all.size()), [&](int i) {
+    fit_free_run(fitter, fitter.settings().rough_steps, all[static_cast<std::size_t>(i)]);
+  });
   sort_starts(kSameEnd, all);
-  keep_close(all);
+  keep_close(fitter.settings().nearly_best, all);
   if (fitter.plant().is_large()) all.resize(1);
   run_all(parallel, static_cast<int>(all.size()),
           [&](int i) { fit_to_the_end(fitter, steps, all[static_cast<std::size_t>(i)]); });
   sort_starts(kSameEnd, all);
-  keep_close(all);
+  keep_close(fitter.settings().nearly_best, all);
   Start best = with_free_ratios(fitter, steps, all, parallel);
   out.model = std::move(best.model);
   out.gap = best.gap;

@@ -11,15 +11,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMisfit = 1.05;        ///< below it there is nothing to explain
-constexpr double kLargestMisfit = 60;   ///< 1/f noise does not exceed that of quiet times further
 constexpr double kLowestCorner = 0.05;  ///< of the band's lowest frequency
 constexpr double kRatio = 1.12;         ///< between successive corner frequencies to try
 constexpr int kCorners = 80;
-constexpr int kTimes = 3, kSteps = 6;
-constexpr double kSame = 0.15;        ///< relative difference of corner frequencies
-constexpr double kPerhapsNoise = 10;  ///< spread_of() below which a fit is tried
-constexpr double kLikeNoise = 2;      ///< spread_of() below which it is noise
+constexpr int kTimes = 3;  ///< that the model is fitted to a color
 
 std::vector<NoiseCell> cells_of(const Whitened& system, const RecordSegment& segment) {
   const Index n = system.operation.equations();
@@ -80,30 +75,32 @@ void set_corner(double corner_hz, std::vector<RecordSegment>& segments) {
 
 bool fit_noise_corner(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now) {
   const Plant& plant = fitter.plant();
+  const SearchSettings& settings = fitter.settings();
   const double misfit = now.total_misfit() / fitter.expected(now.model);
   // Motions that no axis reads, or a single equation, give too little evidence.
   if (plant.unread.cols() > 0 || plant.equations() < 2) return false;
-  if (misfit < kMisfit || misfit > kLargestMisfit) return false;
+  if (misfit < settings.to_explain || misfit > settings.most_of_noise) return false;
   const double earlier_hz = segments.front().corner_hz;
   FitResult corrected = now;
-  double spread = kPerhapsNoise;
+  double spread = settings.perhaps_noise_spread;
   for (int i = 0; i <= kTimes; ++i) {
     const std::vector<NoiseCell> cells = cells_of(fitter, corrected);
     if (cells.empty()) break;
     const double corner_hz = likeliest_corner_hz(cells);
     spread = spread_of(cells, corner_hz);
-    if (corner_hz == 0 || spread > kPerhapsNoise || i == kTimes) break;
-    if (std::abs(corner_hz - segments.front().corner_hz) < kSame * corner_hz) break;
+    if (corner_hz == 0 || spread > settings.perhaps_noise_spread || i == kTimes) break;
+    if (std::abs(corner_hz - segments.front().corner_hz) < settings.same_corner * corner_hz) break;
     set_corner(corner_hz, segments);
-    FitResult again = fitter.fit(corrected.model, corrected.motion, thorough(now.model, kSteps));
+    FitResult again =
+        fitter.fit(corrected.model, corrected.motion, thorough(now.model, settings.steps));
     if (!again.good) {
-      spread = kPerhapsNoise;
+      spread = settings.perhaps_noise_spread;
       break;
     }
     corrected = std::move(again);
   }
   if (segments.front().corner_hz == earlier_hz) return false;
-  if (spread > kLikeNoise) {
+  if (spread > settings.noise_spread) {
     set_corner(earlier_hz, segments);
     return false;
   }

@@ -10,7 +10,6 @@ namespace {
 using H = HysteresisIndex;
 using S = SliderIndex;
 
-constexpr double kSharp = 20;          ///< exponent above which hysteresis is computed as bilinear
 constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
 constexpr double kYielded = 1e-12;     ///< change of z below which the integration stops
 constexpr double kMaxSlides = 5000;
@@ -137,7 +136,7 @@ double HystereticStep::end(const LawValues& values, double d_now) {
   const double travel = (d_now - d_) / dy;
   if (travel == 0) return z_;
   const double most = std::max(shape_.most, std::abs(z_));
-  if (values.form == LawForm::hysteresis && values.p[H::exponent] > kSharp)
+  if (values.form == LawForm::hysteresis && values.p[H::exponent] > kSharpCorner)
     return std::clamp(z_ + travel, -most, most);
   const Slope slope(values, shape_);
   const double direction = travel > 0 ? 1.0 : -1.0;

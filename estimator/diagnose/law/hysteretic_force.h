@@ -25,6 +25,11 @@ struct HysteresisIndex {
   enum : std::size_t { slip = kOwn, width, offset, slip_work, pinched_strength, pinched_stiffness };
 };
 
+/// Exponent of hysteresis above which its corner is sharp: it is computed and named as bilinear.
+inline constexpr double kSharpCorner = 20;
+/// Exponent of a hysteresis that is bilinear.
+inline constexpr double kBilinear = 40;
+
 /// Indices of the parameters of LawForm::sliders: springs of total stiffness kh in series with
 /// sliders. The sliders yield at deformations spread evenly over dy (1 +- spread), toward positive
 /// deformation at 1 + asymmetry times, toward negative at 1 - asymmetry times that. `loss` and

@@ -18,11 +18,9 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
 
-constexpr int kTimesBeside = 3, kStepsBeside = 6, kTimesCells = 10;
-constexpr double kSameCorner = 0.15;  ///< relative difference
-constexpr double kNoiseBeside = 2;    ///< spread_of() of noise
-constexpr double kOutlier = 3;        ///< standard deviations of a cell of noise
-constexpr double kMaxCells = 0.6;     ///< smallest share of cells that are noise
+constexpr int kTimesBeside = 3;           ///< that places are located beside a color
+constexpr int kTimesCells = 10;           ///< that cells are selected
+constexpr std::size_t kMaxOfPairs = 150;  ///< places of a large building, best first
 
 /// Returns the residual with arbitrary signals at a place, in cells.
 std::vector<NoiseCell> cells_at(const Fitter& fitter, const Localisation& place) {
@@ -51,7 +49,7 @@ std::vector<NoiseCell> cells_at(const Fitter& fitter, const Localisation& place)
 }
 
 /// Returns the corner frequency of most of the cells. Removes the other cells from `cells`.
-double corner_of_most(std::vector<NoiseCell>& cells) {
+double corner_of_most(const SearchSettings& settings, std::vector<NoiseCell>& cells) {
   const std::vector<NoiseCell> all = cells;
   double corner_hz = likeliest_corner_hz(cells);
   for (int i = 0; i < kTimesCells; ++i) {
@@ -61,8 +59,9 @@ double corner_of_most(std::vector<NoiseCell>& cells) {
     std::vector<double> sorted;
     for (const NoiseCell& c : all) sorted.push_back(excess(c));
     std::sort(sorted.begin(), sorted.end());
-    const auto most = static_cast<std::size_t>(kMaxCells * static_cast<double>(sorted.size()));
-    const double limit = std::max(kOutlier, sorted[most]);
+    const auto most =
+        static_cast<std::size_t>(settings.cells_of_noise * static_cast<double>(sorted.size()));
+    const double limit = std::max(settings.outlier_std, sorted[most]);
     cells.clear();
     std::copy_if(all.begin(), all.end(), std::back_inserter(cells),
                  [&](const NoiseCell& c) { return excess(c) <= limit; });
@@ -73,35 +72,20 @@ double corner_of_most(std::vector<NoiseCell>& cells) {
   return corner_hz;
 }
 
-constexpr std::size_t kPlaces = 5;  ///< always iterated, of any kind
-constexpr std::size_t kSingle = 3;  ///< further places with one direction that are iterated
-constexpr std::size_t kOfOneKind =
-    2;  ///< further places of the building or a floor that are iterated
-constexpr std::size_t kContenders = 3, kMaxContenders = 5;
-constexpr std::size_t kMaxAsLikely = 16;
-constexpr std::size_t kPairLeaders = 6, kPairs = 3;
-constexpr std::size_t kAxesOfPairs = 24;
-constexpr std::size_t kMaxOfPairs = 150;  ///< places of a large building, best first
-constexpr int kSteps = 8, kPairSteps = 6;
-constexpr int kTrialSteps = 3;     ///< before the ratios are compared
-constexpr double kMinNoise = 0.5;  ///< ratio that noise alone may have
-constexpr double kHardly = 0.5;    ///< of the chance level
-constexpr double kWideMargin =
-    2;  ///< times the margin: places above it after the first steps are dropped
-
 void sort_by_ratio(std::vector<Localisation>& list) {
   std::stable_sort(list.begin(), list.end(),
                    [](const Localisation& a, const Localisation& b) { return a.ratio < b.ratio; });
 }
 
 /// Returns the ratio above which a place is too far from the best to be tried.
-double margin_of(const Localisation& best) {
-  return 1 + 2 * std::max(best.ratio - 1, 0.05) + 0.1;
+double margin_of(const SearchSettings& settings, const Localisation& best) {
+  const double excess = std::max(best.ratio, settings.to_explain) - 1;
+  return 1 + settings.as_likely * excess + settings.place_margin;
 }
 
 /// Returns that ratio for places that have not converged.
-double wide_margin_of(const Localisation& best) {
-  return 1 + kWideMargin * (margin_of(best) - 1);
+double wide_margin_of(const SearchSettings& settings, const Localisation& best) {
+  return 1 + settings.as_likely * (margin_of(settings, best) - 1);
 }
 
 /// Iterates localizations from their first step. Stops those whose ratio after a few steps exceeds
@@ -115,7 +99,7 @@ std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
     const Localisation& from = *starts[static_cast<std::size_t>(i)];
     out[static_cast<std::size_t>(i)] =
         localise(fitter, from.model.theta.size() > 0 ? from.model : now.model, {},
-                 from.candidate_places, kTrialSteps);
+                 from.candidate_places, fitter.settings().first_steps);
   });
   std::erase_if(out, [](const Localisation& l) { return l.model.theta.size() == 0; });
   if (out.empty()) return out;
@@ -126,8 +110,8 @@ std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
     // A large error of a reading converges slowly, and is considered before physical effects.
     const bool axis = one.candidate_places.front().kind == CandidatePlace::Kind::axis;
     if (one.converged || (one.ratio > limit && !axis)) return;
-    const Localisation on =
-        localise(fitter, one.model, one.motion, one.candidate_places, steps - kTrialSteps);
+    const Localisation on = localise(fitter, one.model, one.motion, one.candidate_places,
+                                     steps - fitter.settings().first_steps);
     if (on.misfit < one.misfit) one = on;
   });
   sort_by_ratio(out);
@@ -159,9 +143,13 @@ std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
                                      const std::vector<std::vector<CandidatePlace>>& lists,
                                      const Parallel& parallel) {
   const std::vector<Localisation> all = one_step(fitter, now, lists, parallel);
+  const SearchSettings& settings = fitter.settings();
+  const auto finalists = static_cast<std::size_t>(settings.finalists);
   std::vector<const Localisation*> starts;
-  for (std::size_t i = 0; i < std::min(kPairs, all.size()); ++i) starts.push_back(&all[i]);
-  return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
+  for (std::size_t i = 0; i < std::min(finalists, all.size()); ++i) starts.push_back(&all[i]);
+  return iterated(
+      fitter, now, starts, settings.steps,
+      [&](const Localisation& best) { return wide_margin_of(settings, best); }, parallel);
 }
 
 /// Returns true if the likeliest place explains far less than chance. Near the noise, one step
@@ -170,8 +158,9 @@ bool leaves_nothing(const Fitter& fitter, const FitResult& now,
                     const std::vector<Localisation>& once) {
   if (once.empty()) return true;
   const double ratio = now.total_misfit() / fitter.expected(now.model);
-  const double excess = ratio - std::clamp(once.front().ratio, kMinNoise, 1.0);
-  return ratio < kNearNoise && excess < kHardly * chance_of(fitter, now.model);
+  const double excess = ratio - std::clamp(once.front().ratio, fitter.settings().half, 1.0);
+  return ratio < fitter.settings().near_noise &&
+         excess < fitter.settings().half * chance_of(fitter, now.model);
 }
 
 bool is_global(const CandidatePlace& s) {
@@ -181,10 +170,12 @@ bool is_global(const CandidatePlace& s) {
 }  // namespace
 
 double chance_of(const Fitter& fitter, const Model& model) {
-  return kSignificant / std::sqrt(fitter.expected(model));
+  return fitter.settings().significant / std::sqrt(fitter.expected(model));
 }
 
 Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel) {
+  const SearchSettings& settings = fitter.settings();
+  const auto of_one_sort = static_cast<std::size_t>(settings.of_one_sort);
   Located out;
   std::vector<std::vector<CandidatePlace>> lists;
   for (const CandidatePlace& s : candidate_places_of(fitter.plant(), now.model))
@@ -196,21 +187,25 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
   for (std::size_t i = 0; i < out.once.size(); ++i) {
     const CandidatePlace& place = out.once[i].candidate_places.front();
     // In a large building, both directions of a mass rank above either direction alone.
-    const bool alone = fitter.plant().is_large() && place.size() == 1 && single < kSingle;
-    const bool more = (is_global(place) && global < kOfOneKind) || alone;
-    if (i >= kPlaces && !more) continue;
+    const bool alone = fitter.plant().is_large() && place.size() == 1 && single < of_one_sort;
+    const bool more = (is_global(place) && global < of_one_sort) || alone;
+    if (i >= static_cast<std::size_t>(settings.places) && !more) continue;
     if (nothing && i > 0) break;
     global += is_global(place);
     single += place.size() == 1;
     starts.push_back(&out.once[i]);
   }
-  out.places = iterated(fitter, now, starts, kSteps, wide_margin_of, parallel);
+  out.places = iterated(
+      fitter, now, starts, settings.long_steps,
+      [&](const Localisation& best) { return wide_margin_of(settings, best); }, parallel);
   return out;
 }
 
 std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
                                        const std::vector<Localisation>& once,
                                        const Parallel& parallel) {
+  const auto leaders = static_cast<std::size_t>(fitter.settings().pair_leaders),
+             axes_of_pairs = static_cast<std::size_t>(fitter.settings().labels);
   std::vector<CandidatePlace> all = of_one_direction(once);
   if (fitter.plant().is_large() && all.size() > kMaxOfPairs) all.resize(kMaxOfPairs);
   std::vector<std::vector<CandidatePlace>> lists;
@@ -218,11 +213,10 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
   std::vector<char> leading_axis(all.size(), 0);
   std::size_t axes = 0;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].kind == CandidatePlace::Kind::axis) leading_axis[i] = axes++ < kAxesOfPairs;
+    if (all[i].kind == CandidatePlace::Kind::axis) leading_axis[i] = axes++ < axes_of_pairs;
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j)
-      if (i < kPairLeaders || (leading_axis[i] && leading_axis[j]))
-        lists.push_back({all[i], all[j]});
+      if (i < leaders || (leading_axis[i] && leading_axis[j])) lists.push_back({all[i], all[j]});
   return best_lists(fitter, now, lists, parallel);
 }
 
@@ -240,23 +234,28 @@ std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
   if (located.once.empty() || located.places.empty()) return {};
   const double chance = chance_of(fitter, now.model);
   const double most = located.once.front().ratio + chance;
+  const auto most_places = static_cast<std::size_t>(fitter.settings().as_likely_places);
   std::vector<const Localisation*> starts;
   for (const Localisation& l : located.once) {
     const CandidatePlace& s = l.candidate_places.front();
     const bool seen = std::any_of(
         located.places.begin(), located.places.end(),
         [&](const Localisation& place) { return place.candidate_places.front().place == s.place; });
-    if (l.ratio > most || starts.size() >= kMaxAsLikely) break;
+    if (l.ratio > most || starts.size() >= most_places) break;
     if (s.kind != CandidatePlace::Kind::element && !seen) starts.push_back(&l);
   }
   const double limit = located.places.front().ratio + chance;
   std::vector<Localisation> out = iterated(
-      fitter, now, starts, kSteps, [&](const Localisation&) { return limit + chance; }, parallel);
+      fitter, now, starts, fitter.settings().long_steps,
+      [&](const Localisation&) { return limit + chance; }, parallel);
   std::erase_if(out, [&](const Localisation& l) { return l.ratio > limit; });
   return out;
 }
 
-std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
+std::vector<Localisation> contenders(const SearchSettings& settings,
+                                     const std::vector<Localisation>& places) {
+  const auto of_one_sort = static_cast<std::size_t>(settings.of_one_sort),
+             most = static_cast<std::size_t>(settings.places);
   std::vector<Localisation> out;
   std::map<CandidatePlace::Kind, int> of_kind;
   if (places.empty()) return out;
@@ -265,16 +264,16 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   const auto single = std::find_if(places.begin(), places.end(), [](const Localisation& place) {
     return place.candidate_places.front().size() == 1;
   });
-  const bool apart = places.front().ratio > kNearNoise && single != places.end();
-  const double wide = wide_margin_of(places.front());
+  const bool apart = places.front().ratio > settings.near_noise && single != places.end();
+  const double wide = wide_margin_of(settings, places.front());
   for (const Localisation& place : places) {
     const bool alone = apart && place.candidate_places.front().size() == 1;
-    const double limit = margin_of(alone ? *single : places.front());
+    const double limit = margin_of(settings, alone ? *single : places.front());
     // Bending frames are located by a moment at the base, which explains only part of them.
     const bool moment = place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
     if (place.ratio > (moment ? wide : limit)) continue;
     const bool another_kind = of_kind[place.candidate_places.front().kind]++ == 0;
-    const bool worth = out.size() < kContenders || (another_kind && out.size() < kMaxContenders);
+    const bool worth = out.size() < of_one_sort || (another_kind && out.size() < most);
     if (worth || moment) out.push_back(place);
   }
   return out;
@@ -287,15 +286,17 @@ bool set_noise_corner_at(const Fitter& fitter, std::vector<RecordSegment>& segme
   double spread = 0;
   for (int i = 0; i <= kTimesBeside; ++i) {
     std::vector<NoiseCell> cells = cells_at(fitter, now);
-    if (cells.empty() || (i == 0 && spread_of(cells, 0) < kNoiseBeside)) break;
-    const double corner_hz = corner_of_most(cells);
+    if (cells.empty() || (i == 0 && spread_of(cells, 0) < fitter.settings().noise_spread)) break;
+    const double corner_hz = corner_of_most(fitter.settings(), cells);
     spread = spread_of(cells, corner_hz);
     if (i == kTimesBeside || corner_hz == 0) break;
-    if (std::abs(corner_hz - segments.front().corner_hz) < kSameCorner * corner_hz) break;
+    if (std::abs(corner_hz - segments.front().corner_hz) <
+        fitter.settings().same_corner * corner_hz)
+      break;
     set_corner(corner_hz, segments);
-    now = localise(fitter, now.model, now.motion, now.candidate_places, kStepsBeside);
+    now = localise(fitter, now.model, now.motion, now.candidate_places, fitter.settings().steps);
   }
-  if (spread > kNoiseBeside) set_corner(before_hz, segments);
+  if (spread > fitter.settings().noise_spread) set_corner(before_hz, segments);
   return segments.front().corner_hz != before_hz;
 }
 

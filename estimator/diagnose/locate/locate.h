@@ -7,8 +7,6 @@
 
 namespace framewatch::estimator {
 
-constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
-
 /// Returns the increase of Localisation::ratio above 1 that is more than chance.
 double chance_of(const Fitter& fitter, const Model& model);
 
@@ -39,7 +37,8 @@ std::vector<Localisation> locate_beside(const Fitter& fitter, const FitResult& n
                                         const CandidatePlace& known, const Parallel& parallel);
 
 /// Returns the places whose laws are fitted: those near the best, a few of each kind.
-std::vector<Localisation> contenders(const std::vector<Localisation>& places);
+std::vector<Localisation> contenders(const SearchSettings& settings,
+                                     const std::vector<Localisation>& places);
 
 /// Estimates the corner frequency of the noise (RecordSegment::corner_hz) from the residual with
 /// arbitrary signals at a place. Uses most of the cells; in the others some effect is still

@@ -17,14 +17,9 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr int kCells = 15;
-constexpr int kMinCount = 3;           ///< samples of a cell that is shown
-constexpr int kTimes = 8;              ///< supports of a stiffness that varies in time
-constexpr double kNearlyAll = 0.93;    ///< of the best share, which a simpler kind must explain
-constexpr double kKindFollows = 0.5;   ///< share below which no kind explains the force
-constexpr double kBeyondChance = 1.3;  ///< misfit of a linear element over noise
-constexpr double kAsImpact = 0.7;      ///< of the powers' rest, which a clearance must not exceed
-constexpr double kPowersDo = 0.97;     ///< share from which powers explain all
-constexpr int kClearances = 12;        ///< tried, up to the largest deformation
+constexpr int kMinCount = 3;     ///< samples of a cell that is shown
+constexpr int kTimes = 8;        ///< supports of a stiffness that varies in time
+constexpr int kClearances = 12;  ///< tried, up to the largest deformation
 
 /// Column in time of one record.
 using Columns = std::vector<VectorXd>;
@@ -148,6 +143,7 @@ class KindSearch {
   }
 
   KindOfLaw run() {
+    const SearchSettings& settings = fitter_.settings();
     KindOfLaw out;
     double noise = 0;
     for (const RecordSegment& s : fitter_.segments()) noise += static_cast<double>(s.bins());
@@ -167,9 +163,10 @@ class KindSearch {
     share(LawKind::hysteretic,
           rest([&](const NeededSignal& n) { return memories(n, scales_); }, false));
     share(LawKind::time_varying, rest([](const NeededSignal& n) { return times(n); }, true));
-    out.kind = linear < kBeyondChance * noise ? LawKind::linear : simplest(out.share);
+    out.kind = linear < settings.beyond_linear * noise ? LawKind::linear : simplest(out.share);
     const double impact = out.share[static_cast<std::size_t>(LawKind::impact)];
-    if (out.kind == LawKind::elastic && smooth < kPowersDo && 1 - impact < kAsImpact * (1 - smooth))
+    if (out.kind == LawKind::elastic && smooth < settings.explains &&
+        1 - impact < settings.as_impact * (1 - smooth))
       out.kind = LawKind::impact;
     picture(out);
     return out;
@@ -224,12 +221,13 @@ class KindSearch {
     return best;
   }
 
-  static LawKind simplest(const std::array<double, 7>& share) {
+  LawKind simplest(const std::array<double, 7>& share) const {
+    const SearchSettings& settings = fitter_.settings();
     const double best = *std::max_element(share.begin(), share.end());
-    if (best < kKindFollows) return LawKind::external;
+    if (best < settings.kind_follows) return LawKind::external;
     for (const LawKind kind : {LawKind::elastic, LawKind::dissipative, LawKind::impact,
                                LawKind::time_varying, LawKind::hysteretic})
-      if (share[static_cast<std::size_t>(kind)] >= kNearlyAll * best) return kind;
+      if (share[static_cast<std::size_t>(kind)] >= settings.simpler_kind * best) return kind;
     return LawKind::hysteretic;
   }
 

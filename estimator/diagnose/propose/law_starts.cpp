@@ -14,8 +14,6 @@ namespace {
 using F = LawForm;
 using Shape = std::vector<LawParameter>;
 
-constexpr double kBilinear = 40;  ///< exponent of bilinear hysteresis
-constexpr double kSmooth = 20;    ///< exponent below which hysteresis is smooth
 constexpr double kMaxLoss = 5;
 
 std::vector<double> shrinking(double from, double to, double factor) {
@@ -40,7 +38,7 @@ void add_losses(Shape& shape) {
 }
 
 LawStarts bouc_wen(const LawScale& s, double exponent) {
-  const bool bilinear = exponent > kSmooth;
+  const bool bilinear = exponent > kSharpCorner;
   LawStarts out{
       F::hysteresis, bilinear ? EffectKind::bilinear_hysteresis : EffectKind::bouc_wen, {}};
   for (const double yield : shrinking(0.9, 0.004, 0.7)) {
@@ -295,13 +293,13 @@ void free_shape(ModelEffect& effect) {
   };
   switch (effect.form) {
     case F::hysteresis:
-      if (p[H::exponent].plain() > kSmooth) return;
+      if (p[H::exponent].plain() > kSharpCorner) return;
       for (const std::size_t i : {+H::exponent, +H::beta, +H::strength_loss, +H::stiffness_loss})
         release(i);
       break;
     case F::pinched:
     case F::slip_lock:
-      if (p[H::exponent].plain() > kSmooth) return;
+      if (p[H::exponent].plain() > kSharpCorner) return;
       for (const std::size_t i :
            {+H::exponent, +H::beta, +H::offset, +H::pinched_strength, +H::pinched_stiffness})
         release(i);

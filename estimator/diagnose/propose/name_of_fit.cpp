@@ -11,24 +11,19 @@ namespace framewatch::estimator {
 
 namespace {
 
-constexpr double kQuadratic = 2.45;  ///< exponent below which a spring counts as quadratic
-constexpr double kNoPower = 0.25;    ///< exponent of the rate below which it is friction
-constexpr double kSlips = 1.3;       ///< stiffness at yielding over that at zero force
-constexpr double kRigid =
-    0.02;  ///< yield deformation, relative to the largest, below which it is friction
-
-EffectKind elastic_name(double exponent) {
-  return exponent < kQuadratic ? EffectKind::quadratic_stiffness : EffectKind::cubic_stiffness;
+EffectKind elastic_name(const SearchSettings& settings, double exponent) {
+  return exponent < settings.quadratic ? EffectKind::quadratic_stiffness
+                                       : EffectKind::cubic_stiffness;
 }
 
 /// Returns true if a pinched law is clearly softer at zero force than where it yields.
-bool slips(const ModelEffect& effect) {
+bool slips(const ModelEffect& effect, double most) {
   using H = HysteresisIndex;
   const auto p = [&](std::size_t i) { return effect.parameters[i].plain(); };
   const auto stiffness = [&](double z) {
     return 1 - p(H::slip) * std::exp(-std::pow((z - p(H::offset)) / p(H::width), 2));
   };
-  return p(H::slip_work) > 0 || stiffness(1) > kSlips * stiffness(0);
+  return p(H::slip_work) > 0 || stiffness(1) > most * stiffness(0);
 }
 
 }  // namespace
@@ -78,49 +73,51 @@ ModelEffect two_slopes(const ModelEffect& contact) {
   return out;
 }
 
-EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) {
+EffectKind name_of_fit(const SearchSettings& settings, const ModelEffect& effect,
+                       const RecordSegment& segment) {
   switch (effect.form) {
     case LawForm::power:
-      return elastic_name(effect.parameters[1].plain());
+      return elastic_name(settings, effect.parameters[1].plain());
     case LawForm::saturating:
-      return elastic_name(nearest_exponent(effect));
+      return elastic_name(settings, nearest_exponent(effect));
     case LawForm::hysteresis:
-      if (effect.parameters[1].plain() < kRigid * effect.deformation)
+      if (effect.parameters[1].plain() < settings.rigid * effect.deformation)
         return EffectKind::coulomb_friction;
-      return effect.parameters[2].plain() > 20 ? EffectKind::bilinear_hysteresis
-                                               : EffectKind::bouc_wen;
+      return effect.parameters[2].plain() > kSharpCorner ? EffectKind::bilinear_hysteresis
+                                                         : EffectKind::bouc_wen;
     case LawForm::sliders:
     case LawForm::asymptotic:
     case LawForm::masing:
     case LawForm::peak_oriented:
-      return effect.parameters[1].plain() < kRigid * effect.deformation
+      return effect.parameters[1].plain() < settings.rigid * effect.deformation
                  ? EffectKind::coulomb_friction
                  : EffectKind::bilinear_hysteresis;
     case LawForm::pinched:
-      return slips(effect) ? EffectKind::pinching : name_of_fit(without_slip(effect), segment);
+      return slips(effect, settings.slips) ? EffectKind::pinching
+                                           : name_of_fit(settings, without_slip(effect), segment);
     case LawForm::slip_lock:
     case LawForm::slack:
       return EffectKind::pinching;
     case LawForm::friction:
       return EffectKind::coulomb_friction;
     case LawForm::power_damping:
-      return effect.parameters[1].plain() < kNoPower ? EffectKind::coulomb_friction
-                                                     : EffectKind::quadratic_damping;
+      return effect.parameters[1].plain() < settings.no_power ? EffectKind::coulomb_friction
+                                                              : EffectKind::quadratic_damping;
     case LawForm::amplitude:
       return EffectKind::amplitude_dependence;
     case LawForm::gap_positive:
     case LawForm::gap_negative:
       return EffectKind::one_sided_gap;
     case LawForm::gap_both:
-      return effect.parameters[0].plain() < 0 ? elastic_name(nearest_exponent(effect))
+      return effect.parameters[0].plain() < 0 ? elastic_name(settings, nearest_exponent(effect))
                                               : EffectKind::two_sided_gap;
     case LawForm::changing: {
       // The length of a change shows only in records with motion during the change.
       double shortest = 1e300;
       for (const std::vector<LawParameter>& parameters : effect.record_parameters)
         shortest = std::min(shortest, parameters[1].plain());
-      return shortest < 0.06 * segment.seconds() ? EffectKind::stiffness_drop
-                                                 : EffectKind::stiffness_drift;
+      return shortest < settings.sudden * segment.seconds() ? EffectKind::stiffness_drop
+                                                            : EffectKind::stiffness_drift;
     }
     case LawForm::mass:
       return EffectKind::extra_mass;

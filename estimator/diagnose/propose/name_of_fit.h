@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "estimator/diagnose/fit/search_settings.h"
 #include "estimator/diagnose/model/model.h"
 #include "estimator/diagnose/spectra/record_segment.h"
 #include "estimator/structure/effect.h"
@@ -10,7 +11,8 @@ namespace framewatch::estimator {
 /// Returns the catalog's name for a fitted effect. Within a family of laws the fitted exponent,
 /// duration or width decides. segment: the first one, whose length distinguishes a drop from a
 /// drift.
-EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment);
+EffectKind name_of_fit(const SearchSettings& settings, const ModelEffect& effect,
+                       const RecordSegment& segment);
 
 /// Returns a hysteresis that acts everywhere as the pinched law (LawForm::pinched) acts at zero
 /// force. Equivalent to a slip zone as wide as the whole loop.

@@ -180,15 +180,9 @@ Proposal harmonic_proposal(const Fitter& fitter, const Localisation& place,
   return proposal_of(place, std::move(e), EffectKind::unmeasured_force, misfit);
 }
 
-constexpr double kFollows = 0.3;  ///< share of a force beyond noise that laws must explain
-constexpr double kSlow = 0.3;     ///< of the rms rate: width of the friction term
+constexpr double kSlow = 0.3;  ///< of the rms rate: width of the friction term
 
-constexpr double kStationary = 0.25;  ///< share at rest above which a force may be external
-constexpr double kAsMuch = 0.5;       ///< share at rest above which laws must explain kMostly
-constexpr double kMostly = 0.6;       ///< replaces kFollows then
-constexpr double kStandsOut = 3;      ///< power of a force over its noise
-constexpr double kEnds_s = 2;         ///< of a segment, which end effects disturb
-constexpr double kQuietest = 0.15;    ///< share of the seconds that count as rest
+constexpr double kEnds_s = 2;  ///< of a segment, which end effects disturb
 
 /// Adds a hidden mass on a spring: force m a T(w).
 void add_resonator(const Fitter& fitter, const Localisation& place,
@@ -257,8 +251,9 @@ Seconds seconds_of(const Plant& plant, const RecordSegment& s, const VectorXcd& 
 
 /// Returns the power of a force while the ground is at rest, over its mean power. A law of the
 /// building has no such power. Returns 0 if the force does not exceed its noise.
-double share_at_rest(const Plant& plant, const RecordSegment& s, const NeededSignal& needed) {
-  const Seconds seconds = seconds_of(plant, s, beyond_linear(s, needed));
+double share_at_rest(const Fitter& fitter, const RecordSegment& s, const NeededSignal& needed) {
+  const SearchSettings& settings = fitter.settings();
+  const Seconds seconds = seconds_of(fitter.plant(), s, beyond_linear(s, needed));
   const std::size_t count = seconds.force.size();
   if (count < 8) return 0;
   std::vector<std::size_t> order(count);
@@ -268,14 +263,14 @@ double share_at_rest(const Plant& plant, const RecordSegment& s, const NeededSig
   });
   const double intervals = static_cast<double>(s.intervals());
   const double noise = 2 * needed.weight.cwiseInverse().sum() / (intervals * intervals);
-  const auto quiet =
-      std::max<std::size_t>(2, static_cast<std::size_t>(kQuietest * static_cast<double>(count)));
+  const auto quiet = std::max<std::size_t>(
+      2, static_cast<std::size_t>(settings.at_rest * static_cast<double>(count)));
   double rest = 0, all = 0;
   for (std::size_t i = 0; i < count; ++i) {
     all += seconds.force[order[i]] / static_cast<double>(count);
     if (i < quiet) rest += seconds.force[order[i]] / static_cast<double>(quiet);
   }
-  return all > kStandsOut * noise ? (rest - noise) / (all - noise) : 0;
+  return all > settings.stands_out * noise ? (rest - noise) / (all - noise) : 0;
 }
 
 /// Returns true if nonlinear laws of the element's deformation explain more than `share` of a force
@@ -300,13 +295,15 @@ bool follows_motion(const RecordSegment& s, const NeededSignal& needed, int rati
 void add_node_proposals(const Fitter& fitter, const Localisation& place,
                         const std::vector<NeededSignal>& needed, const EffectPlace& node,
                         std::vector<Proposal>& out) {
+  const SearchSettings& settings = fitter.settings();
   add_resonator(fitter, place, needed, node, out);
   out.push_back(harmonic_proposal(fitter, place, needed, node));
   for (std::size_t r = 0; r < needed.size(); ++r) {
     const RecordSegment& s = fitter.segments()[r];
-    const double at_rest = share_at_rest(fitter.plant(), s, needed[r]);
-    if (at_rest < kStationary) return;
-    const double share = at_rest < kAsMuch ? kFollows : kMostly;
+    const double at_rest = share_at_rest(fitter, s, needed[r]);
+    if (at_rest < settings.some_at_rest) return;
+    const double share =
+        at_rest < settings.much_at_rest ? settings.follows : settings.follows_at_rest;
     if (follows_motion(s, needed[r], fitter.ratio(r), share)) return;
   }
   if (needed.front().d_t.size() > 0 && follows_motion(kind_of_law(fitter, needed).kind)) return;

@@ -22,14 +22,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kMisfit = 1.05;      ///< below it there is nothing to explain
 constexpr double kNoRatio = 1e-4;     ///< below it a ratio counts as zero
 constexpr double kDamperStep = 0.05;  ///< of the largest dashpot of the design
-constexpr std::size_t kDampersTried = 4;
 constexpr double kStillFalls =
     0.99;                  ///< cost after a fit over that before, below which fits continue
 constexpr int kTimes = 4;  ///< largest number of fits
-constexpr int kStepsWith = 10, kStepsWithout = 8;
 
 /// Returns the fall of the cost that justifies one value: half the logarithm of the number of data,
 /// times the ratio of the misfit to noise.
@@ -105,7 +102,8 @@ void remove_redundant_ratios(const Fitter& fitter, const std::vector<std::size_t
                              FitResult& now) {
   const FewerRatios fewer = without_redundant(fitter, ratios, now);
   if (fewer.removed == 0) return;
-  FitResult without = fitter.fit(fewer.model, now.motion, thorough(fewer.model, kStepsWithout));
+  FitResult without =
+      fitter.fit(fewer.model, now.motion, thorough(fewer.model, fitter.settings().long_steps));
   const double price = static_cast<double>(fewer.removed) * price_of(fitter, now);
   if (without.good && without.cost < now.cost + price) now = std::move(without);
 }
@@ -135,17 +133,21 @@ FitResult with_free_damping(const Fitter& fitter, const FitResult& now) {
   const bool held = std::any_of(ratios.begin(), ratios.end(), [&](std::size_t e) {
     return !now.model.effects[e].parameters[0].free;
   });
-  if (!held || now.total_misfit() < kMisfit * fitter.expected(now.model)) return {};
+  if (!held || now.total_misfit() < fitter.settings().to_explain * fitter.expected(now.model))
+    return {};
   FitResult out = now;
   for (const std::size_t e : ratios) out.model.effects[e].parameters[0].free = true;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kTimes; ++i) {
     const bool runs = forcing_of(out.model) == Forcing::simulated;
-    FitResult next = runs ? fit_to_the_end(fitter, out.model, out.motion)
-                          : fitter.fit(out.model, out.motion, thorough(out.model, kStepsWith));
+    FitResult next =
+        runs ? fit_to_the_end(fitter, out.model, out.motion)
+             : fitter.fit(out.model, out.motion, thorough(out.model, fitter.settings().long_steps));
     if (!next.good) break;
     out = std::move(next);
-    if (out.cost > kStillFalls * before || out.steps < (runs ? kEndSteps : kStepsWith)) break;
+    if (out.cost > kStillFalls * before ||
+        out.steps < (runs ? fitter.settings().steps : fitter.settings().long_steps))
+      break;
     before = out.cost;
   }
   return out;
@@ -169,7 +171,7 @@ bool one_damper_does(const TrialContext& context, const FitResult& with) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return gains[a].cost > gains[b].cost; });
-  order.resize(std::min(order.size(), kDampersTried));
+  order.resize(std::min(order.size(), static_cast<std::size_t>(context.fitter.settings().dampers)));
   double ratios = 0;
   for (const ModelEffect& e : with.model.effects)
     ratios += e.form == LawForm::modal_damping && e.parameters[0].plain() > kNoRatio;
@@ -179,7 +181,8 @@ bool one_damper_does(const TrialContext& context, const FitResult& with) {
     Model one = now.model;
     one.effects.push_back(dampers[i]);
     one.effects.back().parameters[0].value = gains[i].value;
-    const FitResult fit = context.fitter.fit(one, now.motion, thorough(one, kStepsWith));
+    const FitResult fit =
+        context.fitter.fit(one, now.motion, thorough(one, context.fitter.settings().long_steps));
     return fit.good && fit.cost < enough;
   });
 }

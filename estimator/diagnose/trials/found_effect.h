@@ -33,10 +33,11 @@ struct FoundEffect {
 /// Returns the fitted rivals that alone would keep the confidence below `confidence`, best first.
 /// Empty if the effect was chosen together with others, because its own trial then has no part in
 /// it.
-std::vector<const Trial*> near_rivals(const FoundEffect& effect, double confidence);
+std::vector<const Trial*> near_rivals(const SearchSettings& settings, const FoundEffect& effect,
+                                      double confidence);
 
 /// Returns the best trial as an effect. trials: best first. Sets the alternatives, the names that
 /// the data cannot distinguish from its name, and the confidence from the margin to the best rival.
-FoundEffect effect_of(const std::vector<Trial>& trials);
+FoundEffect effect_of(const SearchSettings& settings, const std::vector<Trial>& trials);
 
 }  // namespace framewatch::estimator

@@ -11,20 +11,14 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kExplained = 0.9;  ///< of the masses' excess cost, by one effect
-constexpr double kAsWell =
-    0.8;  ///< of the best one's gain, above which the effect remains ambiguous
-constexpr double kPromises = 0.5;  ///< of the needed gain, by one step
-constexpr std::size_t kTried = 8;
 constexpr std::size_t kMaxPlaces = 64;  ///< of a large building, likeliest first
-constexpr double kBeyond = 2;           ///< standard deviations of a frame's mass
 
 /// Returns true if an extra mass lies within the tolerance of the masses of all its frames.
-bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
+bool is_tolerated(const Structure& s, const ModelEffect& effect, double most) {
   if (effect.form != LawForm::mass) return false;
   const std::vector<int> frames = frames_at(s, effect.place.crossing);
   return std::all_of(frames.begin(), frames.end(), [&](int frame) {
-    return effect.parameters[0].plain() < kBeyond * sigma * s.frame_mass(effect.place.story, frame);
+    return effect.parameters[0].plain() < most * s.frame_mass(effect.place.story, frame);
   });
 }
 
@@ -48,10 +42,12 @@ std::vector<Proposal> promising(const TrialContext& context, const Located& loca
   const std::vector<LinearGain> gains = linear_gains(context, effects);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (gains[i].value > 0 && gains[i].cost > kPromises * needed) order.push_back(i);
+    if (gains[i].value > 0 && gains[i].cost > context.fitter.settings().half * needed)
+      order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return gains[a].cost > gains[b].cost; });
-  if (order.size() > kTried) order.resize(kTried);
+  if (order.size() > static_cast<std::size_t>(context.fitter.settings().linear_effects))
+    order.resize(static_cast<std::size_t>(context.fitter.settings().linear_effects));
   std::vector<Proposal> out;
   for (const std::size_t i : order) {
     all[i].model.effects.back().parameters.front().value = gains[i].value;
@@ -64,22 +60,25 @@ std::vector<Proposal> promising(const TrialContext& context, const Located& loca
 
 std::vector<Trial> implausible_masses(const TrialContext& context, const Located& located) {
   const Model& model = context.now.model;
+  const SearchSettings& settings = context.fitter.settings();
   const double sigma = context.fitter.tolerances().mass;
   if (sigma <= 0) return {};
   const double by_chance = 0.5 * static_cast<double>(model.mass_change.size());
   const double excess = 0.5 * (model.mass_change / sigma).squaredNorm() - by_chance;
-  if (excess < kImplausibleMasses) return {};
-  const double needed = std::max(kImplausibleMasses, kExplained * excess);
+  if (excess < settings.implausible_masses) return {};
+  const double needed = std::max(settings.implausible_masses, settings.explains_most * excess);
   std::vector<Trial> out = try_effects(context, promising(context, located, needed));
   std::erase_if(out, [&](const Trial& t) {
     return t.outcome != TrialOutcome::fitted || context.now.cost - t.cost < needed ||
            !(t.model.effects.back().parameters[0].plain() > 0) ||
-           is_tolerated(context.fitter.plant().structure, t.model.effects.back(), sigma);
+           is_tolerated(context.fitter.plant().structure, t.model.effects.back(),
+                        settings.mass_std * sigma);
   });
   for (Trial& t : out) t.fraction = std::min(1.0, (context.now.cost - t.cost) / excess);
   std::stable_sort(out.begin(), out.end(),
                    [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
-  if (out.size() > 1 && context.now.cost - out[1].cost > kAsWell * (context.now.cost - out[0].cost))
+  if (out.size() > 1 &&
+      context.now.cost - out[1].cost > settings.explains_much * (context.now.cost - out[0].cost))
     return {};
   return out;
 }

@@ -8,9 +8,6 @@
 
 namespace framewatch::estimator {
 
-/// Prior cost of the masses, above its expectation, that counts as implausible.
-constexpr double kImplausibleMasses = 15;
-
 /// Checks if a model fits only because its masses differ from the declared ones by more than
 /// chance. Tries a single linear effect instead: an extra mass at a node, a spring or damper
 /// between floors or to the ground, rotation of the base or of the frames. Returns those that make

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 
+#include "estimator/diagnose/law/hysteretic_force.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/modal_damping.h"
 
@@ -14,7 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr double kBilinear = 40;  ///< exponent of bilinear hysteresis
 
 LawParameter sized(double value) {
   return linear_parameter(value, 0.02 * std::max(std::abs(value), 1e-12));

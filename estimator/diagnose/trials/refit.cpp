@@ -17,8 +17,6 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kFitSteps = 5, kOnTheWay = 2;  ///< of the last fit, and of each before it
-
 void fix_exponent(EffectKind kind, ModelEffect& effect) {
   if (kind == EffectKind::coulomb_friction && effect.form == LawForm::power_damping) {
     effect.form = LawForm::friction;
@@ -49,26 +47,14 @@ void fix_exponent(EffectKind kind, ModelEffect& effect) {
   exponent.free = false;
 }
 
-constexpr int kJudgedSteps = 6;
-constexpr double kNothing = 0.98;  ///< gap with an effect over the one without
-constexpr int kRoughSteps = 4;
-/// Cost without an effect after kRoughSteps over that with it, above which the effect is needed.
-constexpr double kNeeded = 4;
-/// Gap with an effect over the one without after kRoughSteps, below which the effect reduces the
-/// gap.
-constexpr double kClearly = 0.75;
-
 /// Replaces `now` by the fit of a smaller model, started from it, unless that is worse. Returns
 /// true if it was replaced.
 bool replaced_by(const Fitter& fitter, const Model& smaller, FitResult& now) {
   FitResult less = fit_to_the_end(fitter, smaller, now.motion);
-  if (!less.good || less.cost > now.cost + kMinGain) return false;
+  if (!less.good || less.cost > now.cost + fitter.settings().min_gain) return false;
   now = std::move(less);
   return true;
 }
-
-constexpr int kSharpSteps = 12;
-constexpr int kWeakestSteps = 6;  ///< to the weakest record, which gives only a start
 
 }  // namespace
 
@@ -90,14 +76,14 @@ Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
     if (strength(r) < strength(weakest)) weakest = r;
   const std::vector<RecordSegment> one{all[weakest]};
   const Fitter alone = c.fitter.with(one);
-  const FitResult run = alone.fit(model, {}, thorough(model, kWeakestSteps));
+  const FitResult run = alone.fit(model, {}, thorough(model, c.fitter.settings().steps));
   return run.good ? run.model : model;
 }
 
 Trial refined(const TrialContext& c, const Trial& trial, const Model& from) {
   Model start = from;
   free_shapes(start);
-  FitResult run = c.fitter.fit(start, {}, thorough(start, kSharpSteps));
+  FitResult run = c.fitter.fit(start, {}, thorough(start, c.fitter.settings().longest_steps));
   if (!run.good) return trial;
   if (ends_with_harmonic(run.model)) run = with_onsets(c.fitter, std::move(run));
   Trial out = trial;
@@ -107,8 +93,8 @@ Trial refined(const TrialContext& c, const Trial& trial, const Model& from) {
 
 FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
                          const std::vector<Eigen::MatrixXcd>& motion) {
-  FitResult out = fitter.fit(model, motion, thorough(model, kEndSteps));
-  FitOptions along = thorough(out.model, kEndSteps);
+  FitResult out = fitter.fit(model, motion, thorough(model, fitter.settings().steps));
+  FitOptions along = thorough(out.model, fitter.settings().steps);
   along.through_run = false;
   FitResult more = fitter.fit(out.model, out.motion, along);
   return more.good && more.cost < out.cost ? more : out;
@@ -127,16 +113,16 @@ double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
   const Model* models[] = {&with, &without};
   double gaps[2];
   run_all(parallel, 2, [&](int i) {
-    gaps[i] = judged_fit(fitter, {*models[i]}, kJudgedSteps, fitter.within()).gap;
+    gaps[i] = judged_fit(fitter, {*models[i]}, fitter.settings().steps, fitter.within()).gap;
   });
   return gaps[0] / gaps[1];
 }
 
 bool is_redundant(const Fitter& fitter, const Model& with, const Model& without,
                   const Parallel& parallel) {
-  const double first = free_run_fit(fitter, {without}, kRoughSteps, false).gap;
-  if (rms_gap(fitter, with) < kClearly * first) return false;
-  return gap_ratio(fitter, with, without, parallel) > kNothing;
+  const double first = free_run_fit(fitter, {without}, fitter.settings().rough_steps, false).gap;
+  if (rms_gap(fitter, with) < fitter.settings().clearly_less * first) return false;
+  return gap_ratio(fitter, with, without, parallel) > 1 - fitter.settings().same_gap;
 }
 
 Model without_effects(const Model& model, const std::vector<FoundEffect>& effects,
@@ -175,14 +161,15 @@ void remove_not_needed(const Fitter& fitter, const Parallel& parallel,
     run_all(parallel, static_cast<int>(effects.size()), [&](int i) {
       const auto at = static_cast<std::size_t>(i);
       const Model model = without_effects(now.model, effects, at, at + 1, fitter.plant());
-      const FitResult rough = fitter.fit(model, now.motion, thorough(model, kRoughSteps));
-      if (rough.good && rough.cost < kNeeded * now.cost)
+      const FitResult rough =
+          fitter.fit(model, now.motion, thorough(model, fitter.settings().rough_steps));
+      if (rough.good && rough.cost < fitter.settings().hopeless * now.cost)
         less[at] = fit_to_the_end(fitter, rough.model, rough.motion);
     });
     std::size_t best = 0;
     for (std::size_t i = 1; i < less.size(); ++i)
       if (less[i].good && (!less[best].good || less[i].cost < less[best].cost)) best = i;
-    if (!less[best].good || less[best].cost > now.cost + kMinGain) return;
+    if (!less[best].good || less[best].cost > now.cost + fitter.settings().min_gain) return;
     now = std::move(less[best]);
     erase_effect(best, effects);
   }
@@ -223,7 +210,8 @@ Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segme
     shrink(&Model::mass_change, share, {});
     shrink(&Model::gain, share, out.free_gain);
     shrink(&Model::clock_s, share, out.free_clock);
-    FitOptions options = thorough(out, share > 0 ? kOnTheWay : kFitSteps);
+    FitOptions options =
+        thorough(out, share > 0 ? exact.settings().first_steps : exact.settings().steps);
     options.through_run = share == 0;
     const FitResult next = exact.fit(out, {}, options);
     if (next.good) out = next.model;

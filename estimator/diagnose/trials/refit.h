@@ -24,12 +24,7 @@ Model fitted_to_the_weakest(const TrialContext& context, const Model& model);
 /// Frees the shapes of all laws (free_shape).
 void free_shapes(Model& model);
 
-/// Smallest fall of the cost that justifies an effect.
-inline constexpr double kMinGain = 50;
-
-inline constexpr int kEndSteps = 6;
-
-/// Fits until neither kind of derivative improves the fit, with kEndSteps each. An unfinished fit
+/// Fits until neither kind of derivative improves the fit. An unfinished fit
 /// would appear as one more effect.
 FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
                          const std::vector<Eigen::MatrixXcd>& motion);

@@ -11,11 +11,6 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
-/// Excess at a law's place over that at the best one, up to which the rest may be the law's shape.
-constexpr double kAboutAsLikely = 2;
-constexpr int kLawSteps = 6;
-
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
@@ -51,7 +46,8 @@ Localisation localise_law(const TrialContext& context, const Located& located,
                           const std::vector<CandidatePlace>& own) {
   for (const Localisation& l : located.places)
     if (own.size() == 1 && l.candidate_places.front().place == own.front().place) return l;
-  return localise(context.fitter, context.now.model, context.now.motion, own, kLawSteps);
+  return localise(context.fitter, context.now.model, context.now.motion, own,
+                  context.fitter.settings().steps);
 }
 
 }  // namespace
@@ -89,11 +85,13 @@ void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>
         places_of_law(located, e.chosen.place, context.fitter.plant().structure);
     if (own.empty()) continue;
     const Localisation law = localise_law(context, located, own);
-    if (law.ratio - 1 > kAboutAsLikely * std::max(least, chance) + chance) continue;
+    if (law.ratio - 1 > context.fitter.settings().as_likely * std::max(least, chance) + chance)
+      continue;
     if (own.size() == 1 && law.ratio > 1 + chance) {
       std::vector<Localisation> beside =
           locate_beside(context.fitter, context.now, located.once, own.front(), context.parallel);
-      if (!beside.empty() && beside.front().ratio - 1 < kPairShare * (law.ratio - 1)) {
+      if (!beside.empty() &&
+          beside.front().ratio - 1 < context.fitter.settings().pair_leaves * (law.ratio - 1)) {
         located.places = std::move(beside);
         return;
       }
@@ -105,7 +103,7 @@ void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>
 
 std::vector<Trial> trials_of_places(const TrialContext& context, const Located& located,
                                     bool small) {
-  std::vector<Localisation> places = contenders(located.places);
+  std::vector<Localisation> places = contenders(context.fitter.settings(), located.places);
   if (small) std::erase_if(places, is_element);
   const std::vector<Localisation> more =
       as_likely(context.fitter, context.now, located, context.parallel);
@@ -139,7 +137,9 @@ std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& l
   const Localisation& best = located.places.front();
   const std::vector<Localisation> pairs =
       locate_pairs(context.fitter, context.now, located.once, context.parallel);
-  const double limit = best.ratio > kOnePlace ? 1 + kPairShare * (best.ratio - 1) : kOnePlace;
+  const double limit = best.ratio > context.fitter.settings().one_place
+                           ? 1 + context.fitter.settings().pair_leaves * (best.ratio - 1)
+                           : context.fitter.settings().one_place;
   std::vector<Trial> out;
   if (pairs.empty() || pairs.front().ratio >= limit) return out;
   bound = std::min(context.now.cost, bound_of(context.fitter.plant(), pairs.front()));

@@ -9,8 +9,6 @@
 
 namespace framewatch::estimator {
 
-constexpr double kOnePlace = 1.6;  ///< ratio above which one place does not suffice
-
 /// Returns true if the first place is an element.
 bool is_element(const Localisation& place);
 

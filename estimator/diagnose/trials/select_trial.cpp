@@ -16,8 +16,6 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr std::size_t kMaxRivals = 3;
-constexpr double kFarBehind = 4;   ///< times the cost of the chosen law
 constexpr double kMinLeft = 0.02;  ///< of the design's stiffness
 
 struct Rival {
@@ -25,44 +23,30 @@ struct Rival {
   FitResult fit;
 };
 
-std::vector<const Trial*> rivals_of(const FoundEffect& effect) {
+std::vector<const Trial*> rivals_of(const SearchSettings& settings, const FoundEffect& effect) {
   std::vector<const Trial*> out;
   for (const Trial& t : effect.alternatives) {
     const bool tried = t.outcome == TrialOutcome::fitted || t.outcome == TrialOutcome::screened_out;
     const bool again =
         std::any_of(out.begin(), out.end(), [&](const Trial* o) { return o->kind == t.kind; });
     if (!tried || again || t.second || t.kind == effect.chosen.kind ||
-        !(t.place == effect.chosen.place) || t.cost > kFarBehind * effect.chosen.cost ||
+        !(t.place == effect.chosen.place) || t.cost > settings.hopeless * effect.chosen.cost ||
         t.model.effects.empty() || !t.model.effects.back().element_law())
       continue;
     out.push_back(&t);
-    if (out.size() == kMaxRivals) break;
+    if (out.size() == static_cast<std::size_t>(settings.finalists)) break;
   }
   return out;
 }
-
-constexpr double kExplains =
-    0.97;  ///< share of the misfit beyond noise that a law must explain to be named
-constexpr double kExplainsMost = 0.9;  ///< that share if the rest is within chance
-constexpr double kNearest = 0.8;       ///< that share for the nearest law
-constexpr double kSharp = 0.995;       ///< share above which a fit need not be refined
-constexpr double kBlunt = 0.4;         ///< share below which refining does not pay
-constexpr std::size_t kRefined = 3;
-/// Times the best cost, or its excess beyond chance: trials above either are not refined.
-constexpr double kHopeless = 4;
-constexpr double kBehind = 2;    ///< reductions that are more than chance
-constexpr double kWorse = 1.02;  ///< misfit of a record, relative
-/// Share of the misfit beyond noise by which an arbitrary force must be better than a law.
-constexpr double kArbitraryPrice = 1 - kExplains;
 
 bool is_arbitrary_force(const Trial& t) {
   return !t.model.effects.empty() && t.model.effects.back().form == LawForm::broadband;
 }
 
-double limit_of(const Trial& best, double enough) {
-  const double by_cost = kHopeless * best.cost;
+double limit_of(const SearchSettings& settings, const Trial& best, double enough) {
+  const double by_cost = settings.hopeless * best.cost;
   if (is_arbitrary_force(best)) return by_cost;
-  return std::min(by_cost, enough + kHopeless * std::max(0.0, best.cost - enough));
+  return std::min(by_cost, enough + settings.hopeless * std::max(0.0, best.cost - enough));
 }
 
 /// Refines the leading trials with everything free. enough: cost above which more than chance is
@@ -70,29 +54,39 @@ double limit_of(const Trial& best, double enough) {
 /// rivals.
 void refine_leading(const TrialContext& context, double enough, double needed,
                     std::vector<Trial>& trials) {
+  const SearchSettings& settings = context.fitter.settings();
   const Trial& best = trials.front();
   const bool done = best.cost <= enough && !is_arbitrary_force(best);
-  const double limit = done ? best.cost + kBehind * needed : limit_of(best, enough);
-  run_all(context.parallel, static_cast<int>(std::min(kRefined, trials.size())), [&](int i) {
-    Trial& t = trials[static_cast<std::size_t>(i)];
-    if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit) return;
-    const bool late = ends_with_harmonic(t.model) && t.cost > enough;
-    if (t.refined || !(late || t.fraction < kSharp)) return;
-    t = refined(context, t, t.model);
-    t.refined = true;
-  });
+  const double limit =
+      done ? best.cost + settings.behind * needed : limit_of(settings, best, enough);
+  run_all(
+      context.parallel,
+      static_cast<int>(std::min(static_cast<std::size_t>(settings.finalists), trials.size())),
+      [&](int i) {
+        Trial& t = trials[static_cast<std::size_t>(i)];
+        if (t.outcome != TrialOutcome::fitted || t.fraction <= settings.promises || t.cost > limit)
+          return;
+        const bool late = ends_with_harmonic(t.model) && t.cost > enough;
+        if (t.refined || !(late || t.fraction < settings.sharp)) return;
+        t = refined(context, t, t.model);
+        t.refined = true;
+      });
 }
 
 /// Refits the leading trials, starting from a fit to the record with the weakest effect.
 void approach(const TrialContext& context, double enough, std::vector<Trial>& trials) {
-  const double limit = limit_of(trials.front(), enough);
-  run_all(context.parallel, static_cast<int>(std::min(kRefined, trials.size())), [&](int i) {
-    Trial& t = trials[static_cast<std::size_t>(i)];
-    if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit || t.approached)
-      return;
-    t = refined(context, t, fitted_to_the_weakest(context, t.model));
-    t.approached = true;
-  });
+  const SearchSettings& settings = context.fitter.settings();
+  const double limit = limit_of(settings, trials.front(), enough);
+  run_all(context.parallel,
+          static_cast<int>(std::min(static_cast<std::size_t>(settings.finalists), trials.size())),
+          [&](int i) {
+            Trial& t = trials[static_cast<std::size_t>(i)];
+            if (t.outcome != TrialOutcome::fitted || t.fraction <= settings.promises ||
+                t.cost > limit || t.approached)
+              return;
+            t = refined(context, t, fitted_to_the_weakest(context, t.model));
+            t.approached = true;
+          });
 }
 
 }  // namespace
@@ -111,9 +105,9 @@ double fitted_values(const Model& model) {
   return out;
 }
 
-bool worsens(const Trial& trial, const FitResult& now, double chance) {
+bool worsens(const Fitter& fitter, const Trial& trial, const FitResult& now, double chance) {
   for (std::size_t r = 0; r < now.misfit.size(); ++r)
-    if (trial.misfit[r] > kWorse * now.misfit[r] + chance) return true;
+    if (trial.misfit[r] > (1 + fitter.settings().same_gap) * now.misfit[r] + chance) return true;
   return false;
 }
 
@@ -124,8 +118,9 @@ bool is_nearest_law(const TrialContext& context, const Trial& trial) {
       effects.size() <= now.model.effects.size() || !effects.back().element_law())
     return false;
   const double noise = context.fitter.expected(now.model);
-  return now.cost - trial.cost > kNearest * (now.total_misfit() - noise) &&
-         !worsens(trial, now, noise * chance_of(context.fitter, now.model));
+  return now.cost - trial.cost >
+             context.fitter.settings().explains_much * (now.total_misfit() - noise) &&
+         !worsens(context.fitter, trial, now, noise * chance_of(context.fitter, now.model));
 }
 
 bool select_trial(const TrialContext& context, double bound, double needed,
@@ -133,6 +128,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
   if (std::none_of(trials.begin(), trials.end(),
                    [](const Trial& t) { return t.outcome == TrialOutcome::fitted; }))
     return false;
+  const SearchSettings& settings = context.fitter.settings();
   const FitResult& now = context.now;
   const double to_explain = now.cost - bound;
   // Penalties: two effects must beat one by more than chance, an arbitrary force must beat a law,
@@ -142,7 +138,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
     const bool arbitrary = t.model.effects.size() > now.model.effects.size() &&
                            t.model.effects.back().form == LawForm::broadband;
     return t.cost + of_value * fitted_values(t.model) + (t.second ? needed : 0.0) +
-           (arbitrary ? needed + kArbitraryPrice * std::max(to_explain, 0.0) : 0.0);
+           (arbitrary ? needed + (1 - settings.explains) * std::max(to_explain, 0.0) : 0.0);
   };
   const auto rank = [&] {
     std::stable_sort(trials.begin(), trials.end(), [&](const Trial& a, const Trial& b) {
@@ -155,22 +151,22 @@ bool select_trial(const TrialContext& context, double bound, double needed,
   rank();
   refine_leading(context, bound + needed, needed, trials);
   rank();
-  if (trials.front().fraction < kExplains) {
+  if (trials.front().fraction < settings.explains) {
     approach(context, bound + needed, trials);
     rank();
   }
   const Trial& best = trials.front();
   // In a component test the place is known, and real parts follow no law exactly.
   const bool component = context.fitter.plant().equations() == 1;
-  const bool most = best.fraction >= (component ? kExplainsMost : kExplains) ||
-                    (best.fraction >= kExplainsMost && best.cost - bound < needed);
-  return most && now.cost - best.cost > needed && !worsens(best, now, needed);
+  const bool most = best.fraction >= (component ? settings.explains_most : settings.explains) ||
+                    (best.fraction >= settings.explains_most && best.cost - bound < needed);
+  return most && now.cost - best.cost > needed && !worsens(context.fitter, best, now, needed);
 }
 
 bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitResult& now) {
   if (effect.index < 0 || effect.chosen.second) return false;
   const auto index = static_cast<std::size_t>(effect.index);
-  const std::vector<const Trial*> others = rivals_of(effect);
+  const std::vector<const Trial*> others = rivals_of(context.fitter.settings(), effect);
   if (!now.model.effects[index].element_law() || others.empty()) return false;
   const Plant& plant = context.fitter.plant();
   FitResult without = now;
@@ -179,7 +175,8 @@ bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitRes
                            context.progress};
   const auto as_trial = [&](const FitResult& fit) {
     Trial t = effect.chosen;
-    t.kind = name_of_fit(fit.model.effects[index], context.fitter.segments().front());
+    t.kind = name_of_fit(context.fitter.settings(), fit.model.effects[index],
+                         context.fitter.segments().front());
     t.cost = fit.cost;
     t.misfit = fit.misfit;
     t.model = fit.model;
@@ -210,7 +207,7 @@ bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitRes
   const bool another = all.front().trial.kind != own.kind;
   std::vector<Trial> trials;
   for (Rival& r : all) trials.push_back(r.trial);
-  FoundEffect fresh = effect_of(trials);
+  FoundEffect fresh = effect_of(context.fitter.settings(), trials);
   fresh.confidence = std::min(fresh.confidence, effect.confidence);
   if (!another) {
     effect.confidence = fresh.confidence;

@@ -24,7 +24,7 @@ bool is_nearest_law(const TrialContext& context, const Trial& trial);
 double fitted_values(const Model& model);
 
 /// Returns true if a trial fits any record worse than the present model, by more than chance.
-bool worsens(const Trial& trial, const FitResult& now, double chance);
+bool worsens(const Fitter& fitter, const Trial& trial, const FitResult& now, double chance);
 
 /// Compares a found law again with the best alternatives at its place, each fitted as its
 /// replacement in the present model. The first comparison knew neither the form of the damping nor

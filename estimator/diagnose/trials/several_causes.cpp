@@ -21,21 +21,7 @@ namespace {
 /// Indices of laws, in the order of their effects in a model.
 using Members = std::vector<std::size_t>;
 
-constexpr std::size_t kMaxTried = 9, kFewestTried = 3, kMaxCauses = 3;
-constexpr std::size_t kMaxWork = 60;   ///< laws times equations
-constexpr std::size_t kKept = 3;       ///< sets of one size that are extended
-constexpr std::size_t kFinished = 6;   ///< sets that are fitted to convergence
-constexpr double kWithOneCause = 0.9;  ///< largest gap with one cause over that without any
-constexpr double kWithOneMore = 0.95;  ///< largest gap with one more: a tenth of the misfit's power
-constexpr double kNearly = 1.1;    ///< gap over the best's, below which a set does nearly as well
-constexpr double kMinShare = 0.1;  ///< of the design, of a start's stiffness or damping
-constexpr double kLittle = 0.1;    ///< of the size that an effect has in its trial
-// Steps of a fit.
-constexpr int kStartSteps = 1;   ///< of each start of a set
-constexpr int kScreenSteps = 3;  ///< of the better half of the sets, after their best start's
-constexpr int kJointSteps = 5;   ///< in a round of a fit to convergence
-constexpr int kNoneSteps = 8;    ///< of the model without causes
-
+constexpr std::size_t kMaxWork = 60;  ///< laws times equations
 struct CauseSet {
   Members members;
   Model model;  ///< of the training records
@@ -59,7 +45,10 @@ bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& o
 /// Returns laws that may be causes, best first, one of every name and place.
 std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
   const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
-  const std::size_t most = std::clamp(kMaxWork / equations, kFewestTried, kMaxTried);
+  const SearchSettings& settings = c.fitter.settings();
+  const auto finalists = static_cast<std::size_t>(settings.finalists);
+  const std::size_t most =
+      std::clamp(kMaxWork / equations, finalists, static_cast<std::size_t>(settings.causes));
   std::vector<const Trial*> out;
   for (const Trial& t : tried) {
     const bool otherwise = std::any_of(out.begin(), out.end(),
@@ -89,7 +78,7 @@ Model extended(const TrialContext& c, const Model& model, const Trial& t, Start 
   const auto known = static_cast<std::ptrdiff_t>(c.now.model.effects.size());
   out.effects.insert(out.effects.end(), t.model.effects.begin() + known, t.model.effects.end());
   free_shapes(out);
-  const double part = start == Start::little ? kLittle : 1;
+  const double part = start == Start::little ? c.fitter.settings().small_start : 1;
   for (std::size_t e = model.effects.size(); e < out.effects.size(); ++e)
     scale_amplitude(part, out.effects[e]);
   const auto add = [&](std::vector<int> Model::*freed, Eigen::VectorXd Model::*errors) {
@@ -106,7 +95,7 @@ Model extended(const TrialContext& c, const Model& model, const Trial& t, Start 
     out.mass_change = t.model.mass_change;
   } else if (start == Start::changed) {
     out.theta = (out.theta + t.model.theta - c.now.model.theta)
-                    .cwiseMax(kMinShare * c.fitter.plant().design);
+                    .cwiseMax(c.fitter.settings().small_start * c.fitter.plant().design);
   }
   return out;
 }
@@ -115,6 +104,8 @@ class Selection {
  public:
   Selection(const TrialContext& context, const std::vector<Trial>& tried, std::size_t holdout_from)
       : context_(context),
+        settings_(context.fitter.settings()),
+        finalists_(static_cast<std::size_t>(settings_.finalists)),
         tried_(possible(context, tried)),
         holdout_from_(std::min(holdout_from, context.fitter.segments().size())),
         seen_(context.fitter.segments().begin(),
@@ -124,16 +115,16 @@ class Selection {
   SeveralCauses run() {
     if (tried_.empty() || holdout_from_ == context_.fitter.segments().size()) return {};
     const std::vector<Model> starts = linear_starts(context_.fitter.plant(), context_.now.model);
-    none_ = judged({}, judged_fit(train_, starts, kNoneSteps, context_.parallel).model);
+    none_ = judged({}, judged_fit(train_, starts, settings_.long_steps, context_.parallel).model);
     CauseSet best = none_;
     std::vector<CauseSet> kept{none_};
-    for (std::size_t size = 1; size <= kMaxCauses && !kept.empty(); ++size) {
+    for (std::size_t size = 1; size <= finalists_ && !kept.empty(); ++size) {
       context_.progress("several causes");
       kept = larger(kept);
       const auto leads =
           std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });
       if (leads != kept.end() && is_worth(*leads, best)) best = *leads;
-      if (kept.size() > kKept) kept.resize(kKept);
+      if (kept.size() > finalists_) kept.resize(finalists_);
     }
     return result(without_redundant(std::move(best)));
   }
@@ -157,7 +148,7 @@ class Selection {
   CauseSet finished(const CauseSet& s) const {
     std::vector<Model> starts{s.model};
     if (std::optional<Model> again = restarted(s)) starts.push_back(std::move(*again));
-    return judged(s.members, free_run_fit(train_, starts, kJointSteps, true).model);
+    return judged(s.members, free_run_fit(train_, starts, settings_.steps, true).model);
   }
 
   /// Returns the set's model with the trials' shapes where shapes have reached their bounds,
@@ -190,10 +181,10 @@ class Selection {
 
   /// Returns true if a larger set justifies its additional causes by the gap of all records, and by
   /// half as much in the held-out ones.
-  static bool is_worth(const CauseSet& larger, const CauseSet& s) {
+  bool is_worth(const CauseSet& larger, const CauseSet& s) const {
     const auto more = static_cast<int>(larger.members.size() - s.members.size());
-    const double takes = s.members.empty() ? kWithOneCause * std::pow(kWithOneMore, more - 1)
-                                           : std::pow(kWithOneMore, more);
+    const double takes = s.members.empty() ? settings_.leads * std::pow(settings_.pays, more - 1)
+                                           : std::pow(settings_.pays, more);
     return larger.all < takes * s.all && larger.held_out < 0.5 * (1 + takes) * s.held_out;
   }
 
@@ -237,6 +228,7 @@ class Selection {
   /// better half a few more, then the best to convergence.
   std::vector<CauseSet> larger(const std::vector<CauseSet>& sets) {
     const std::vector<Extension> all = extensions(sets);
+    const auto laws = static_cast<std::size_t>(settings_.laws);
     std::vector<CauseSet> out(all.size());
     run_all(context_.parallel, static_cast<int>(all.size()), [&](int i) {
       const Extension& e = all[static_cast<std::size_t>(i)];
@@ -245,17 +237,17 @@ class Selection {
       for (const Start start : {Start::changed, Start::trial, Start::little})
         starts.push_back(extended(context_, e.from->model, t, start));
       out[static_cast<std::size_t>(i)] =
-          judged(e.members, free_run_fit(train_, starts, kStartSteps, false).model);
+          judged(e.members, free_run_fit(train_, starts, 1, false).model);
     });
     const auto best_first = [&] {
       std::stable_sort(out.begin(), out.end(),
                        [](const CauseSet& a, const CauseSet& b) { return a.all < b.all; });
     };
     best_first();
-    if (const std::size_t half = (out.size() + 1) / 2; half > kFinished) out.resize(half);
+    if (const std::size_t half = (out.size() + 1) / 2; half > laws) out.resize(half);
     run_all(context_.parallel, static_cast<int>(out.size()), [&](int i) {
       CauseSet& s = out[static_cast<std::size_t>(i)];
-      s = judged(s.members, free_run_fit(train_, {s.model}, kScreenSteps, false).model);
+      s = judged(s.members, free_run_fit(train_, {s.model}, settings_.first_steps, false).model);
     });
     // A set whose values do not match its names is another law. Fitted records count too, because
     // with few held-out ones several sets do nearly as well.
@@ -264,7 +256,7 @@ class Selection {
       best_first();
     };
     sort();
-    if (out.size() > kFinished) out.resize(kFinished);
+    if (out.size() > laws) out.resize(laws);
     run_all(context_.parallel, static_cast<int>(out.size()), [&](int i) {
       CauseSet& s = out[static_cast<std::size_t>(i)];
       s = finished(s);
@@ -319,8 +311,8 @@ class Selection {
       return std::find(s.members.begin(), s.members.end(), cause) != s.members.end();
     };
     for (const CauseSet& s : all_) {
-      if (s.members.size() != best.members.size() || s.held_out > kNearly * best.held_out ||
-          has(s, own) || !may_lead(s))
+      if (s.members.size() != best.members.size() ||
+          s.held_out > settings_.nearly_best * best.held_out || has(s, own) || !may_lead(s))
         continue;
       Members others;
       for (const std::size_t i : s.members)
@@ -339,14 +331,16 @@ class Selection {
     for (std::size_t i = 0; i < best.members.size(); ++i) {
       Cause cause{*tried_[best.members[i]], like(best, i)};
       if (!is_axis_error(cause.trial.kind))
-        cause.trial.kind =
-            name_of_fit(best.model.effects[effect_of(best, i)], context_.fitter.segments().front());
+        cause.trial.kind = name_of_fit(settings_, best.model.effects[effect_of(best, i)],
+                                       context_.fitter.segments().front());
       out.causes.push_back(std::move(cause));
     }
     return out;
   }
 
   const TrialContext& context_;
+  const SearchSettings& settings_;
+  std::size_t finalists_;
   std::vector<const Trial*> tried_;
   std::size_t holdout_from_;
   std::vector<RecordSegment> seen_;

@@ -13,17 +13,6 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
-constexpr int kFromFarSteps = 20;
-constexpr int kTrialSteps = 3;  ///< of a free run's fit, before the costs are compared
-/// Times the least cost so far, or the cost without the trials' effects: fits above it stop there.
-constexpr double kCostLimit = 4;
-/// Cost of the best trial over that without one, above which friction starts again.
-constexpr double kNothingFound = 0.3;
-/// Cost over that without a trial, above which the trial explains nothing.
-constexpr double kUseless = 0.9;
-constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
-
 /// A start model and the names of its new effects.
 struct Candidate {
   Model model;
@@ -32,7 +21,6 @@ struct Candidate {
   EffectPlace place;
   std::optional<std::pair<EffectKind, EffectPlace>> second;
   std::size_t from = 0;  ///< index of its place
-  int steps = kFirstSteps;
 };
 
 struct Fitted {
@@ -40,10 +28,11 @@ struct Fitted {
   const Candidate* candidate;
 };
 
-FitOptions full_fit(const Model& model) {
+FitOptions full_fit(const SearchSettings& settings, const Model& model) {
   FitOptions options;
   options.forcing = forcing_of(model);
-  options.max_steps = options.forcing == Forcing::simulated ? kRunSteps : kLinearSteps;
+  options.max_steps =
+      options.forcing == Forcing::simulated ? settings.long_steps : settings.longest_steps;
   return options;
 }
 
@@ -70,16 +59,17 @@ std::vector<Fitted> worth_a_free_run(const TrialContext& c, std::vector<Fitted> 
   std::vector<Fitted> out;
   double least = c.now.cost;
   for (const Fitted& f : first) least = std::min(least, f.fit.cost);
-  const bool found = least < kNothingFound * c.now.cost;
+  const bool found = least < c.fitter.settings().leaves_little * c.now.cost;
+  const auto laws_run = static_cast<std::size_t>(c.fitter.settings().finalists);
   std::size_t place = 0, of_place = 0, named_of_place = 0;
   for (Fitted& f : first) {
     if (f.candidate->from != place) of_place = named_of_place = 0;
     place = f.candidate->from;
     Trial driven = trial_of(c, *f.candidate, f.fit, TrialOutcome::screened_out);
     const bool named = may_be_named(c, driven);
-    const bool nothing = found && f.fit.cost > kUseless * c.now.cost;
+    const bool nothing = found && f.fit.cost > c.fitter.settings().useless * c.now.cost;
     if (nothing ||
-        (!f.candidate->second && of_place >= kLawsRun && (!named || named_of_place >= kLawsRun))) {
+        (!f.candidate->second && of_place >= laws_run && (!named || named_of_place >= laws_run))) {
       screened_out.push_back(std::move(driven));
       continue;
     }
@@ -105,8 +95,8 @@ void refit_friction(const TrialContext& c, const std::vector<Candidate>& candida
     if (candidate.second || !ends_with_friction(candidate.model)) return;
     anew[at].candidate = &candidate;
     for (const FitResult& from : friction_starts(c.fitter, candidate.model)) {
-      FitOptions options = full_fit(from.model);
-      options.max_steps = kFromFarSteps;
+      FitOptions options = full_fit(c.fitter.settings(), from.model);
+      options.max_steps = c.fitter.settings().longest_steps;
       FitResult run = c.fitter.fit(from.model, from.motion, options);
       if (is_better(run, anew[at].fit)) anew[at].fit = std::move(run);
     }
@@ -155,19 +145,20 @@ void refit_from_present(const TrialContext& c, const std::vector<Fitted>& kept,
                         std::vector<FitResult>& runs) {
   if (!has_element_law(c.now.model)) return;
   const double least = least_cost(c, runs);
-  if (least < kNearNoise * c.fitter.expected(c.now.model)) return;
+  if (least < c.fitter.settings().near_noise * c.fitter.expected(c.now.model)) return;
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    FitOptions options = full_fit(kept[at].fit.model);
+    FitOptions options = full_fit(c.fitter.settings(), kept[at].fit.model);
     options.max_steps = 0;
     FitResult from;
-    for (const double size : {1.0, 0.1}) {
+    for (const double size : {1.0, c.fitter.settings().small_start}) {
       FitResult one = c.fitter.fit(with_effects_of(c.now.model, kept[at].fit.model, size),
                                    c.now.motion, options);
       if (is_better(one, from)) from = std::move(one);
     }
-    if (!from.good || from.cost > kCostLimit * least) return;
-    FitResult run = c.fitter.fit(from.model, from.motion, full_fit(from.model));
+    if (!from.good || from.cost > c.fitter.settings().hopeless * least) return;
+    FitResult run =
+        c.fitter.fit(from.model, from.motion, full_fit(c.fitter.settings(), from.model));
     if (is_better(run, runs[at])) runs[at] = std::move(run);
   });
 }
@@ -208,21 +199,24 @@ void fit_runs(const TrialContext& c, const std::vector<Candidate>& candidates,
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     const FitResult from = free_run_start(c.fitter, kept[at].fit);
-    FitOptions options = full_fit(from.model);
-    options.max_steps = kTrialSteps;
+    FitOptions options = full_fit(c.fitter.settings(), from.model);
+    options.max_steps = c.fitter.settings().first_steps;
     options.holds_tolerated = c.fitter.plant().is_large();
     runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
   if (const std::string best = best_of(c, kept, runs); !best.empty())
     c.progress(std::to_string(kept.size()) + " laws, so far the best: " + best);
-  if (!c.fitter.plant().is_large() && least_cost(c, runs) > kNothingFound * c.now.cost)
+  if (!c.fitter.plant().is_large() &&
+      least_cost(c, runs) > c.fitter.settings().leaves_little * c.now.cost)
     refit_friction(c, candidates, kept, runs);
   const double least = least_cost(c, runs);
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    if (!runs[at].good || runs[at].cost > kCostLimit * least || runs[at].steps != kTrialSteps)
+    if (!runs[at].good || runs[at].cost > c.fitter.settings().hopeless * least ||
+        runs[at].steps != c.fitter.settings().first_steps)
       return;
-    const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion, full_fit(runs[at].model));
+    const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion,
+                                      full_fit(c.fitter.settings(), runs[at].model));
     if (on.good && on.cost < runs[at].cost) runs[at] = on;
   });
   refit_from_present(c, kept, runs);
@@ -235,7 +229,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   run_all(c.parallel, static_cast<int>(candidates.size()), [&](int i) {
     const Candidate& candidate = candidates[static_cast<std::size_t>(i)];
     FitOptions options;
-    options.max_steps = candidate.steps;
+    options.max_steps = c.fitter.settings().steps;
     options.holds_tolerated = c.fitter.plant().is_large();
     first[static_cast<std::size_t>(i)] = {c.fitter.fit(candidate.model, candidate.motion, options),
                                           &candidate};
@@ -275,7 +269,7 @@ Candidate joined(const Localisation& pair, const Proposal& p, const Proposal& q)
   model.clock_s += q.model.clock_s - pair.model.clock_s;
   unite(model.free_gain, q.model.free_gain);
   unite(model.free_clock, q.model.free_clock);
-  return {model, pair.motion, p.kind, p.place, std::pair(q.kind, q.place), 0, kPairSteps};
+  return {model, pair.motion, p.kind, p.place, std::pair(q.kind, q.place), 0};
 }
 
 void add_joined(const Localisation& pair, const std::vector<Proposal>& first,
@@ -298,6 +292,7 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
   for (std::size_t i = 0; i < places.size(); ++i) {
     const bool axis = places[i].candidate_places.front().kind == CandidatePlace::Kind::axis;
     std::size_t count = 0;
+    const auto most_laws = static_cast<std::size_t>(c.fitter.settings().laws);
     bool friction = false;
     for (const Proposal& p : proposals[i]) {
       if (wanted && !wanted(p.kind)) continue;
@@ -308,8 +303,8 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
       // A poor fit of sticking friction under measured motion is not a reason to skip it.
       const bool first_friction = !friction && ends_with_friction(p.model);
       friction |= first_friction;
-      if (!axis && count++ >= kLawsFitted && !first_friction) continue;
-      candidates.push_back({p.model, places[i].motion, p.kind, p.place, {}, i, kFirstSteps});
+      if (!axis && count++ >= most_laws && !first_friction) continue;
+      candidates.push_back({p.model, places[i].motion, p.kind, p.place, {}, i});
     }
   }
   c.progress(std::to_string(candidates.size()) + " laws");
@@ -319,8 +314,7 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
 std::vector<Trial> try_effects(const TrialContext& c, const std::vector<Proposal>& proposals) {
   std::vector<Candidate> candidates;
   for (const Proposal& p : proposals)
-    candidates.push_back(
-        {p.model, c.now.motion, p.kind, p.place, {}, candidates.size(), kFirstSteps});
+    candidates.push_back({p.model, c.now.motion, p.kind, p.place, {}, candidates.size()});
   return fit_all(c, candidates);
 }
 
@@ -333,10 +327,11 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
     swap.place.kind = PlaceKind::channel_pair;
     swap.place.channel = std::min(a.axis, b.axis);
     swap.place.with_channel = std::max(a.axis, b.axis);
-    Candidate one{pair.model, {}, EffectKind::swapped, swap.place, {}, 1, 12};
+    Candidate one{pair.model, {}, EffectKind::swapped, swap.place, {}, 1};
     one.model.effects.push_back(swap);
     candidates.push_back(one);
   }
+  const auto laws_of_pair = static_cast<std::size_t>(c.fitter.settings().laws_of_pair);
   std::vector<Proposal> first = propose(c.fitter, pair, 0), second = propose(c.fitter, pair, 1);
   for (std::vector<Proposal>* list : {&first, &second}) {
     std::erase_if(*list, [&](const Proposal& p) {
@@ -345,7 +340,7 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
               p.model.effects.back().form == LawForm::broadband) ||
              is_excluded(c, p.kind);
     });
-    if (list->size() > kPairLaws) list->resize(kPairLaws);
+    if (list->size() > laws_of_pair) list->resize(laws_of_pair);
   }
   add_joined(pair, first, second, candidates);
   // One of the two may suffice alone even if its place was not found alone.
@@ -353,7 +348,7 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
   for (const std::vector<Proposal>* list : {&first, &second}) {
     ++from;
     for (const Proposal& p : *list)
-      candidates.push_back({p.model, pair.motion, p.kind, p.place, {}, from, kPairSteps});
+      candidates.push_back({p.model, pair.motion, p.kind, p.place, {}, from});
   }
   return fit_all(c, candidates);
 }

@@ -11,10 +11,6 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kFarOff = 10;    ///< misfit over the expected, below which labels are not doubted
-constexpr double kMaxLeft = 0.3;  ///< of the cost, with the right labels
-constexpr std::size_t kLabelsTried = 24, kLabelsFitted = 6;
-constexpr int kLabelSteps = 8;
 constexpr double kTurned = -2;  ///< relative gain error of a channel with reversed sign
 
 /// Returns the design with the effects of the present model.
@@ -116,22 +112,25 @@ void continue_fits(const TrialContext& c, int steps, std::vector<Trial>& trials)
 
 std::vector<Trial> wrong_labels(const TrialContext& c) {
   const Plant& plant = c.fitter.plant();
+  const SearchSettings& settings = c.fitter.settings();
+  const auto labels = static_cast<std::size_t>(settings.labels),
+             laws = static_cast<std::size_t>(settings.laws);
   const double expected = c.fitter.expected(c.now.model);
   if (plant.is_large() || plant.equations() == 1 || plant.prescribed ||
-      c.now.total_misfit() < kFarOff * expected)
+      c.now.total_misfit() < settings.far_off * expected)
     return {};
   std::vector<Trial> trials = all_labels(c);
   // Motions that no axis reads would change too.
-  if (trials.size() > kLabelsTried && plant.unread.cols() == 0) {
+  if (trials.size() > labels && plant.unread.cols() == 0) {
     estimate_costs(c.fitter.systems(from_the_design(c), {}, Forcing::measured), trials);
     sort_by_cost(trials);
-    trials.resize(kLabelsTried);
+    trials.resize(labels);
   }
   continue_fits(c, 0, trials);
-  if (trials.size() > kLabelsFitted) trials.resize(kLabelsFitted);
-  continue_fits(c, kLabelSteps, trials);
+  if (trials.size() > laws) trials.resize(laws);
+  continue_fits(c, settings.long_steps, trials);
   std::erase_if(trials, [](const Trial& t) { return !(t.cost < 1e300); });
-  if (trials.empty() || trials.front().cost > kMaxLeft * c.now.cost) return {};
+  if (trials.empty() || trials.front().cost > settings.leaves_little * c.now.cost) return {};
   for (Trial& t : trials) t.fraction = (c.now.cost - t.cost) / std::max(c.now.cost - expected, 1.0);
   return trials;
 }

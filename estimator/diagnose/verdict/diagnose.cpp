@@ -64,10 +64,6 @@ std::vector<Trial> trials_of_combined_laws(const TrialContext& c, const EffectPl
   return out;
 }
 
-constexpr int kPolishSteps = 6, kBackSteps = 8;
-constexpr double kWithBoth = 0.95;  ///< gap with a law over that without
-constexpr double kMaxGone = 0.1;    ///< of the misfit beyond noise that remains
-
 class Diagnoser {
  public:
   Diagnoser(const Plant& plant, std::vector<RecordSegment>& segments,
@@ -76,9 +72,11 @@ class Diagnoser {
         segments_(segments),
         progress_(options.progress, options.parallel),
         options_(options),
-        fitter_(plant, segments, options.tolerances, until_over(is_over(), options.within)),
+        fitter_(plant, segments, options.tolerances, until_over(is_over(), options.within),
+                options.settings),
         search_(fitter_, segments, options_, progress_, out_) {
     options_.parallel = until_over(is_over(), progress_.counted());
+    out_.settings = options.settings;
   }
 
   Diagnosis run(std::vector<FoundEffect> ramps) {
@@ -86,7 +84,7 @@ class Diagnoser {
     Model start = initial_model(plant_);
     out_.known = add_known(plant_, segments_, options_.known, start);
     add_modal_damping(plant_, start);
-    FitResult now = fit(start, {}, 12);
+    FitResult now = fit(start, {}, fitter_.settings().longest_steps);
     if (!now.good) {
       out_.reason = "the model cannot be fitted to these records";
       return out_;
@@ -148,7 +146,7 @@ class Diagnoser {
       search_.doubt_all();  // no record that the model has not seen speaks for them
     }
     mark_approximate(fitter_, out_);
-    if (ramps.empty() && withdraw_worse(options_.holdout_from, out_) &&
+    if (ramps.empty() && withdraw_worse(fitter_.settings(), options_.holdout_from, out_) &&
         !in_time(1, [&] { set_models(out_.linear); }))
       out_.model = out_.declared = out_.linear;
     (void)in_time_or_told("laws that come near", [&] { set_leading(fitter_, options_, out_); });
@@ -199,14 +197,16 @@ class Diagnoser {
   /// For a component, replaces the law by laws of two sorts if that explains a tenth of the
   /// remaining power. Hysteresis is of both sorts.
   void find_combined_laws(FitResult& now) {
-    if (plant_.equations() != 1 || out_.effects.size() != 1 || search_.ratio(now) < kNearNoise ||
+    if (plant_.equations() != 1 || out_.effects.size() != 1 ||
+        search_.ratio(now) < fitter_.settings().near_noise ||
         is_of_kind(out_.effects.front().chosen.kind, LawKind::hysteretic))
       return;
-    FitResult linear = fit(out_.linear, {}, kBackSteps);
+    FitResult linear = fit(out_.linear, {}, fitter_.settings().long_steps);
     const std::vector<Trial> trials =
         trials_of_combined_laws(search_.context_of(linear), out_.effects.front().chosen.place);
-    if (trials.empty() || worsens(trials.front(), now, 0) ||
-        gap_ratio(fitter_, trials.front().model, now.model, options_.parallel) > kWithBoth)
+    if (trials.empty() || worsens(fitter_, trials.front(), now, 0) ||
+        gap_ratio(fitter_, trials.front().model, now.model, options_.parallel) >
+            fitter_.settings().pays)
       return;
     out_.effects.clear();
     search_.adopt(trials, linear);
@@ -225,10 +225,10 @@ class Diagnoser {
   void set_models(const Model& model) {
     out_.model = model;
     std::vector<RecordSegment> segments = segments_;
-    const bool judges_linear = out_.ratio_before > kNearNoise,
-               judges = out_.ratio_after > kNearNoise;
+    const bool judges_linear = out_.ratio_before > fitter_.settings().near_noise,
+               judges = out_.ratio_after > fitter_.settings().near_noise;
     const auto judged_of = [&](const std::vector<Model>& starts) {
-      return judged_fit(fitter_, starts, kPolishSteps, fitter_.within());
+      return judged_fit(fitter_, starts, fitter_.settings().steps, fitter_.within());
     };
     JudgedFit linear, judged;
     run_all(options_.parallel, 2, [&](int i) {
@@ -249,19 +249,19 @@ class Diagnoser {
   void withdraw_other_kind(FitResult& now) {
     const double excess = search_.ratio(now) - 1;
     if (out_.effects.size() != 1 || excess < chance_of(fitter_, now.model) ||
-        !contradicts_the_kind(out_.effects.front().chosen, out_.where,
+        !contradicts_the_kind(fitter_.settings(), out_.effects.front().chosen, out_.where,
                               excess / std::max(out_.ratio_before - 1, excess)))
       return;
     out_.rejected = std::move(out_.effects.front().alternatives);
     out_.rejected.insert(out_.rejected.begin(), std::move(out_.effects.front().chosen));
     out_.effects.clear();
-    now = fit(out_.linear, {}, kBackSteps);
+    now = fit(out_.linear, {}, fitter_.settings().long_steps);
   }
 
   /// If nothing is named and no place explains the misfit alone, searches for causes that act at
   /// once.
   bool find_several(FitResult& now) {
-    if (!out_.effects.empty() || search_.alone() < kOnePlace ||
+    if (!out_.effects.empty() || search_.alone() < fitter_.settings().one_place ||
         fits_separately(fitter_, out_.linear, out_.ratio_before))
       return false;
     SeveralCauses several =
@@ -288,7 +288,8 @@ class Diagnoser {
 
   /// Searches for a further effect once several causes explain most of the misfit.
   bool find_further(FitResult& now) {
-    if (plant_.is_large() || search_.ratio(now) - 1 > kMaxGone * (out_.ratio_before - 1))
+    if (plant_.is_large() ||
+        search_.ratio(now) - 1 > (1 - fitter_.settings().explains_most) * (out_.ratio_before - 1))
       return false;
     const Diagnosis before = out_;
     const double corner_hz = segments_.front().corner_hz;

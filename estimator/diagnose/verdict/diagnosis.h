@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/fit/gap.h"
+#include "estimator/diagnose/fit/search_settings.h"
 #include "estimator/diagnose/fit/unknowns.h"
 #include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/propose/law_kind.h"
@@ -68,6 +69,7 @@ struct Diagnosis {
   /// The parts that were not done, or only in part, because the time was over (is_over). If parts
   /// of the search are among them, no name is more likely right than wrong.
   std::vector<std::string> not_done;
+  SearchSettings settings;                   ///< with which it was made
   std::vector<FoundEffect> known;            ///< effects of the configuration, fitted again
   std::vector<FoundEffect> effects;          ///< found, in their order
   std::vector<WhereEntry> where;             ///< the likeliest places, best first
@@ -91,6 +93,7 @@ inline constexpr double kSearchShare = 0.7;
 
 struct DiagnosisOptions {
   Tolerances tolerances;
+  SearchSettings settings;
   int rounds = 3;
   std::size_t holdout_from = 1;     ///< first segment that is held out
   std::vector<Effect> known;        ///< effects that the building is known to have

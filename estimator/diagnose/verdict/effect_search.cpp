@@ -24,31 +24,21 @@
 namespace framewatch::estimator {
 namespace {
 
-/// Fraction above which a second law at the place of the first does not call the first in question.
-constexpr double kOneLaw = 0.99;
-constexpr double kClearer = 0.7;  ///< excess of a place's misfit over that of another search
-constexpr int kStepsBack = 8;
-constexpr std::size_t kLeadLaws = 3;   ///< laws with which another effect is searched for
-constexpr double kLeadExplains = 0.3;  ///< of the misfit that a free place explains
-constexpr double kTogether = 0.97;     ///< of the misfit beyond noise that two laws explain
-constexpr double kMaxOfRest = 0.8;     ///< of the rest after the first, by the second
-constexpr double kNoiseRatio = 1.05,
-                 kMaxNoiseRatio = 3;  ///< ratios of places that allow an estimate of the noise
-
 /// Returns the reduction of the cost that is more than chance.
 double needed_of(const Fitter& fitter, const Model& model) {
-  return std::max(kMinGain, kSignificant * std::sqrt(fitter.expected(model)));
+  return std::max(fitter.settings().min_gain,
+                  fitter.settings().significant * std::sqrt(fitter.expected(model)));
 }
 
 /// Returns the trials with which another effect may act. trials: best first.
-std::vector<Trial> leads_of(const std::vector<Trial>& trials) {
+std::vector<Trial> leads_of(const SearchSettings& settings, const std::vector<Trial>& trials) {
   std::vector<Trial> out;
   for (const Trial& t : without_duplicates(trials)) {
-    if (t.outcome != TrialOutcome::fitted || t.second || t.fraction < kLeadExplains ||
+    if (t.outcome != TrialOutcome::fitted || t.second || t.fraction < settings.promises ||
         t.kind == EffectKind::unmeasured_force)
       continue;
     out.push_back(t);
-    if (out.size() == kLeadLaws) break;
+    if (out.size() == static_cast<std::size_t>(settings.finalists)) break;
   }
   return out;
 }
@@ -206,7 +196,7 @@ void EffectSearch::look_ahead(FitResult& now) {
   const double alone = alone_;
   const double corner_hz = segments_.front().corner_hz;
   provisional_ = true;
-  for (const Trial& lead : leads_of(before.rejected)) {
+  for (const Trial& lead : leads_of(fitter_.settings(), before.rejected)) {
     FitResult with = now;
     if (explains_with_second(lead, with)) {
       now = std::move(with);
@@ -235,7 +225,8 @@ bool EffectSearch::explains_with_second(const Trial& lead, FitResult& now) {
     rounds(now, here ? 2 : 1);
   }
   before_lead_ = 0;
-  if (out_.effects.size() < 2 || ratio(now) - 1 > (1 - kTogether) * (before - 1)) return false;
+  if (out_.effects.size() < 2 || ratio(now) - 1 > (1 - fitter_.settings().explains) * (before - 1))
+    return false;
   doubt_all();
   return true;
 }
@@ -243,7 +234,7 @@ bool EffectSearch::explains_with_second(const Trial& lead, FitResult& now) {
 /// Adds a time-varying law to a law of the motion at the same place, or the reverse.
 bool EffectSearch::find_second_law_at(const Trial& lead, FitResult& now) {
   const std::optional<Localisation> here = localise_element(fitter_, now, lead.place);
-  if (!here || here->ratio > kOnePlace) return false;
+  if (!here || here->ratio > fitter_.settings().one_place) return false;
   const TrialContext context = context_of(now);
   std::vector<Trial> trials = try_places(context, {*here}, [&](EffectKind kind) {
     return changes_with_time(kind) != changes_with_time(lead.kind);
@@ -260,8 +251,9 @@ bool EffectSearch::accepts(const TrialContext& context, double bound, double nee
   if (before_lead_ == 0 || trials.empty()) return false;
   const Trial& best = trials.front();
   return best.outcome == TrialOutcome::fitted &&
-         before_lead_ - best.cost > kTogether * (before_lead_ - bound) &&
-         best.fraction > kMaxOfRest && !worsens(best, context.now, needed);
+         before_lead_ - best.cost > fitter_.settings().explains * (before_lead_ - bound) &&
+         best.fraction > fitter_.settings().explains_much &&
+         !worsens(fitter_, best, context.now, needed);
 }
 
 void EffectSearch::complete(FitResult& now) {
@@ -272,13 +264,15 @@ void EffectSearch::complete(FitResult& now) {
   if (with.good && fit_noise_corner(fitter_, segments_, with)) now = with;
   settle_damping(fitter_, std::move(with), now);
   fit_noise_corner(fitter_, segments_, now);
-  by_place_ = segments_.front().corner_hz == 0 && by_place_hz > 0 && ratio(now) > kNoiseRatio;
+  by_place_ = segments_.front().corner_hz == 0 && by_place_hz > 0 &&
+              ratio(now) > fitter_.settings().to_explain;
   if (by_place_) fit_with_corner(by_place_hz, now);
 }
 
 void EffectSearch::fit_with_corner(double corner_hz, FitResult& now) {
   set_corner(corner_hz, segments_);
-  const FitResult again = fitter_.fit(now.model, now.motion, thorough(now.model, kStepsBack));
+  const FitResult again =
+      fitter_.fit(now.model, now.motion, thorough(now.model, fitter_.settings().long_steps));
   if (again.good) now = again;
 }
 
@@ -287,7 +281,8 @@ void EffectSearch::fit_with_corner(double corner_hz, FitResult& now) {
 void EffectSearch::set_noise_by_place(FitResult& now, Located& located) {
   const Plant& plant = fitter_.plant();
   if (plant.unread.cols() > 0 || plant.equations() < 2 || located.places.empty() ||
-      located.places.front().ratio < kNoiseRatio || located.places.front().ratio > kMaxNoiseRatio ||
+      located.places.front().ratio < fitter_.settings().to_explain ||
+      located.places.front().ratio > fitter_.settings().noise_at_place ||
       !set_noise_corner_at(fitter_, segments_, located.places.front()))
     return;
   by_place_ = true;
@@ -318,7 +313,7 @@ bool EffectSearch::one_round(FitResult& now, std::size_t round) {
   relocate_beside(context_of(now), out_.effects, located);
   if (located.places.empty()) return false;
   const Localisation& place = located.places.front();
-  if (place.ratio - 1 > kClearer * (to_beat_ - 1)) return false;
+  if (place.ratio - 1 > fitter_.settings().clearer * (to_beat_ - 1)) return false;
   alone_ = place.ratio;
   const double expected_now = fitter_.expected(now.model);
   const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;
@@ -329,7 +324,7 @@ bool EffectSearch::one_round(FitResult& now, std::size_t round) {
   const double needed = needed_of(fitter_, now.model);
   if (excess < needed) return find_mass(now, located);
   // If the laws fit, a small rest is a linear effect or the shape of these laws, not a further law.
-  const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
+  const bool small = !out_.effects.empty() && ratio(now) < fitter_.settings().adequate;
   if (small && is_element(place)) return false;
   bool found = false;
   const std::vector<Trial> trials = trials_of(now, located, round, small, found);
@@ -347,7 +342,7 @@ std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& 
   const double needed = needed_of(fitter_, now.model);
   std::vector<Trial> trials;
   double bound = std::min(now.cost, bound_of(fitter_.plant(), place));
-  const bool pairs = place.ratio > kOnePlace;
+  const bool pairs = place.ratio > fitter_.settings().one_place;
   const TrialContext context = context_of(now);
   if (pairs) {
     progress_.begin("pairs of places", shares.trials, shares.laws());
@@ -390,7 +385,8 @@ bool EffectSearch::adopt_accepted(const std::vector<Trial>& trials, FitResult& n
       continue;
     // Two laws at one place are a single law that the catalog lacks.
     const bool whole = earlier.chosen.place.kind == PlaceKind::whole_frame;
-    if (earlier.chosen.fraction < kOneLaw && fitter_.plant().equations() > 1 && !whole)
+    if (earlier.chosen.fraction < fitter_.settings().sharp && fitter_.plant().equations() > 1 &&
+        !whole)
       withdraw(now, i);
     return false;
   }
@@ -400,7 +396,9 @@ bool EffectSearch::adopt_accepted(const std::vector<Trial>& trials, FitResult& n
 
 bool EffectSearch::find_mass(FitResult& now, const Located& located) {
   std::vector<Trial> trials = implausible_masses(context_of(now), located);
-  std::erase_if(trials, [&](const Trial& t) { return worsens(t, now, kImplausibleMasses); });
+  std::erase_if(trials, [&](const Trial& t) {
+    return worsens(fitter_, t, now, fitter_.settings().implausible_masses);
+  });
   if (trials.empty()) return false;
   adopt(trials, now);
   return true;
@@ -416,14 +414,14 @@ void EffectSearch::withdraw(FitResult& now, std::size_t first) {
     out_.rejected.push_back(out_.effects[i].chosen);
   out_.effects.resize(first);
   const Model& model = first == 0 ? out_.linear : out_.effects.back().chosen.model;
-  now = fitter_.fit(model, {}, thorough(model, kStepsBack));
+  now = fitter_.fit(model, {}, thorough(model, fitter_.settings().long_steps));
   if (first > 0) complete(now);
 }
 
 void EffectSearch::adopt(const std::vector<Trial>& trials, FitResult& now) {
   const std::size_t known = out_.effects.size();
   const Trial& best = trials.front();
-  FoundEffect found = effect_of(trials);
+  FoundEffect found = effect_of(fitter_.settings(), trials);
   auto next = static_cast<int>(now.model.effects.size());
   const auto place = [&](FoundEffect& effect) {
     effect.index = is_axis_error(effect.chosen.kind) ? -1 : next++;

@@ -10,10 +10,6 @@ namespace framewatch::estimator {
 
 namespace {
 
-/// Residual of a law over that of a general force of the kind, below which the law is better
-/// evidence than the kind.
-constexpr double kFarLess = 0.1;
-
 bool is_of_deformation(LawKind kind) {
   return kind == LawKind::elastic || kind == LawKind::impact;
 }
@@ -29,24 +25,29 @@ const KindOfLaw* known_there(const Trial& law, const std::vector<WhereEntry>& wh
 
 /// Returns true if a law leaves far less than general functions of the motion. Friction that sticks
 /// is not such a function: it is the force that holds.
-bool is_better_than_its_kind(const Trial& law, const KindOfLaw& known) {
+bool is_better_than_its_kind(const SearchSettings& settings, const Trial& law,
+                             const KindOfLaw& known) {
   const double best = *std::max_element(known.share.begin(), known.share.end());
-  return 1 - law.fraction < kFarLess * (1 - best);
+  return 1 - law.fraction < settings.kind_leaves * (1 - best);
 }
 
 }  // namespace
 
-bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where) {
+bool is_of_the_kind_there(const SearchSettings& settings, const Trial& law,
+                          const std::vector<WhereEntry>& where) {
   const KindOfLaw* known = known_there(law, where);
-  return known && (is_of_kind(law.kind, known->kind) || is_better_than_its_kind(law, *known) ||
-                   (is_of_deformation(known->kind) && is_of_deformation(law.kind)));
+  return known &&
+         (is_of_kind(law.kind, known->kind) || is_better_than_its_kind(settings, law, *known) ||
+          (is_of_deformation(known->kind) && is_of_deformation(law.kind)));
 }
 
 bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
                        std::vector<Trial>& rejected) {
   const auto nearest = std::find_if(rejected.begin(), rejected.end(), [&](const Trial& law) {
     const KindOfLaw* known = known_there(law, where);
-    return known && (is_of_kind(law.kind, known->kind) || is_better_than_its_kind(law, *known)) &&
+    return known &&
+           (is_of_kind(law.kind, known->kind) ||
+            is_better_than_its_kind(context.fitter.settings(), law, *known)) &&
            is_nearest_law(context, law);
   });
   if (nearest == rejected.end()) return false;
@@ -69,7 +70,8 @@ bool is_redundant_force(const Trial& trial, const std::vector<WhereEntry>& where
 
 }  // namespace
 
-bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where, double left) {
+bool contradicts_the_kind(const SearchSettings& settings, const Trial& law,
+                          const std::vector<WhereEntry>& where, double left) {
   if (is_redundant_force(law, where)) return true;
   const auto is = [&](LawKind kind) { return is_of_kind(law.kind, kind); };
   const bool of_deformation = is_of_deformation(law.kind);
@@ -78,7 +80,7 @@ bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where
   return std::any_of(where.begin(), where.end(), [&](const WhereEntry& w) {
     if (!w.kind || !(w.place == law.place)) return false;
     const double share = w.kind->share[static_cast<std::size_t>(w.kind->kind)];
-    if (left < kFarLess * (1 - share)) return false;
+    if (left < settings.kind_leaves * (1 - share)) return false;
     switch (w.kind->kind) {
       case LawKind::elastic:
       case LawKind::impact:

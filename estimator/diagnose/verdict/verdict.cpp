@@ -13,26 +13,7 @@
 #include "estimator/diagnose/verdict/nearest_law.h"
 
 namespace framewatch::estimator {
-namespace {
-
 using Eigen::Index;
-
-constexpr double kAdequateGap = 2;     ///< NRMSE over its floor
-constexpr double kExplainsAll = 0.97;  ///< of the misfit beyond noise
-constexpr double kNearFloor = 2.5;     ///< NRMSE over its floor
-constexpr double kAtFloor = 1.15;      ///< NRMSE over its floor
-constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
-constexpr int kTrainSteps = 8;
-constexpr double kLittle = 0.1;      ///< of an effect's size
-constexpr std::size_t kLeading = 3;  ///< rejected laws whose free run is fitted
-constexpr int kLeadingSteps = 4;
-constexpr double kLeads = 0.9;     ///< gap with a law over the one without
-constexpr double kNoWorse = 1.02;  ///< gap of any record with a law over the one without
-constexpr double kWorse = 1.1;     ///< held-out gap with the effects over the one without
-/// Largest share of the misfit beyond noise that is left if each record is fitted separately.
-constexpr double kApart = 0.25;
-
-}  // namespace
 
 bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_before) {
   double misfit = 0, noise = 0;
@@ -44,7 +25,7 @@ bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_bef
     misfit += fitted.total_misfit();
     noise += alone.expected(0, fitted.model);
   }
-  return misfit / noise - 1 < kApart * (ratio_before - 1);
+  return misfit / noise - 1 < fitter.settings().separate * (ratio_before - 1);
 }
 
 const char* verdict_word(Verdict verdict) {
@@ -74,7 +55,7 @@ namespace {
 
 /// Returns starts of the model with the first `count` of the effects.
 std::vector<Model> starts_with(const std::vector<Model>& found, const Diagnosis& diagnosis,
-                               std::size_t count, const Plant& plant) {
+                               std::size_t count, const Plant& plant, double small_start) {
   std::vector<Model> out;
   for (const Model& model : found) {
     out.push_back(
@@ -86,7 +67,7 @@ std::vector<Model> starts_with(const std::vector<Model>& found, const Diagnosis&
     out.push_back(out.back());
     for (std::size_t e = 0; e < count; ++e)
       if (const int index = diagnosis.effects[e].index; index >= 0)
-        scale_amplitude(kLittle, out.back().effects[static_cast<std::size_t>(index)]);
+        scale_amplitude(small_start, out.back().effects[static_cast<std::size_t>(index)]);
   }
   return out;
 }
@@ -111,11 +92,12 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
     const auto with = static_cast<std::size_t>(i);
     const bool ramp = with > 0 && !out.effects[with - 1].ramp_mps3.empty();
     if (ramp && with < count) return;
-    const std::vector<Model> starts = with == 0 ? linear_starts(fitter.plant(), out.linear)
-                                      : with == count
-                                          ? found
-                                          : starts_with(found, out, with, fitter.plant());
-    models[with] = judged_fit(train, starts, kTrainSteps, fitter.within()).model;
+    const std::vector<Model> starts =
+        with == 0 ? linear_starts(fitter.plant(), out.linear)
+        : with == count
+            ? found
+            : starts_with(found, out, with, fitter.plant(), fitter.settings().small_start);
+    models[with] = judged_fit(train, starts, fitter.settings().long_steps, fitter.within()).model;
     gaps[with] = gaps_of(fitter, models[with]);
   });
   out.before = gaps.front();
@@ -124,7 +106,7 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
   out.after_model = models.back();
   if (count == 0) return;
   const std::vector<Gap> all = gaps_of(fitter, out.model);
-  if (held_out(out.after) > kUndetermined * held_out(all)) {
+  if (held_out(out.after) > fitter.settings().undetermined * held_out(all)) {
     out.after = all;
     out.after_model = out.model;
     out.after_of_all = true;
@@ -161,10 +143,10 @@ bool is_arbitrary(const Model& model) {
 }
 
 /// Returns true if no record is worse.
-bool no_worse(const std::vector<Gap>& before, const std::vector<Gap>& after) {
+bool no_worse(const std::vector<Gap>& before, const std::vector<Gap>& after, double same_gap) {
   if (after.size() < before.size()) return false;
   for (std::size_t r = 0; r < before.size(); ++r)
-    if (after[r].overall > kNoWorse * before[r].overall || after[r].overall > 1) return false;
+    if (after[r].overall > (1 + same_gap) * before[r].overall || after[r].overall > 1) return false;
   return true;
 }
 
@@ -172,24 +154,26 @@ bool no_worse(const std::vector<Gap>& before, const std::vector<Gap>& after) {
 
 void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out) {
   const std::size_t holdout_from = options.holdout_from;
-  if (!out.effects.empty() || out.ratio_after < kNearNoise) return;
+  if (!out.effects.empty() || out.ratio_after < fitter.settings().near_noise) return;
   const std::vector<RecordSegment> seen = training(fitter, holdout_from);
   const Fitter train = fitter.with(seen);
   std::vector<const Trial*> tried;
   for (const Trial& t : out.rejected)
-    if (t.outcome == TrialOutcome::fitted && !is_arbitrary(t.model) && tried.size() < kLeading)
+    if (t.outcome == TrialOutcome::fitted && !is_arbitrary(t.model) &&
+        tried.size() < static_cast<std::size_t>(fitter.settings().finalists))
       tried.push_back(&t);
   std::vector<std::vector<Gap>> gaps(tried.size());
   run_all(options.parallel, static_cast<int>(tried.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    const JudgedFit fit = judged_fit(train, {tried[at]->model}, kLeadingSteps, fitter.within());
+    const JudgedFit fit =
+        judged_fit(train, {tried[at]->model}, fitter.settings().rough_steps, fitter.within());
     gaps[at] = gaps_of(fitter, fit.model);
   });
   for (std::size_t i = 0; i < tried.size(); ++i) {
-    if (!no_worse(out.before, gaps[i])) continue;
+    if (!no_worse(out.before, gaps[i], fitter.settings().same_gap)) continue;
     const LeadingLaw law{*tried[i], mean_gap(out.before, holdout_from),
                          mean_gap(gaps[i], holdout_from)};
-    if (law.after < kLeads * law.before) out.leading.push_back(law);
+    if (law.after < fitter.settings().leads * law.before) out.leading.push_back(law);
   }
   std::stable_sort(out.leading.begin(), out.leading.end(),
                    [](const LeadingLaw& a, const LeadingLaw& b) { return a.after < b.after; });
@@ -197,28 +181,29 @@ void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosi
 
 namespace {
 
-bool is_surrogate(std::size_t holdout_from, const Diagnosis& out) {
+bool is_surrogate(const SearchSettings& settings, std::size_t holdout_from, const Diagnosis& out) {
   if (out.effects.size() != 1 || out.effects.front().index < 0) return false;
   const FoundEffect& only = out.effects.front();
   const PlaceKind at = only.chosen.place.kind;
   const bool one_place = at == PlaceKind::frame || at == PlaceKind::panel ||
                          at == PlaceKind::node || at == PlaceKind::node_pair;
   return one_place && out.model.effects[static_cast<std::size_t>(only.index)].element_law() &&
-         mean_gap(out.after, holdout_from) > kNearFloor * mean_floor(out.after, holdout_from) &&
-         !is_of_the_kind_there(only.chosen, out.where);
+         mean_gap(out.after, holdout_from) >
+             settings.near_floor * mean_floor(out.after, holdout_from) &&
+         !is_of_the_kind_there(settings, only.chosen, out.where);
 }
 
 }  // namespace
 
-bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
+bool withdraw_worse(const SearchSettings& settings, std::size_t holdout_from, Diagnosis& out) {
   if (out.effects.empty()) return false;
   const double before = mean_gap(out.before, holdout_from),
                after = mean_gap(out.after, holdout_from);
   const bool beyond =
       out.after.size() < out.before.size() ||  // a run diverges
       std::any_of(out.after.begin(), out.after.end(), [](const Gap& g) { return g.overall > 1; });
-  const bool worse = beyond || after > kWorse * before;
-  if (!worse && !is_surrogate(holdout_from, out)) return false;
+  const bool worse = beyond || after > settings.nearly_best * before;
+  if (!worse && !is_surrogate(settings, holdout_from, out)) return false;
   for (const FoundEffect& e : out.effects) out.rejected.push_back(e.chosen);
   out.effects.clear();
   out.reason =
@@ -245,7 +230,7 @@ double worst_gap(const std::vector<Gap>& gaps) {
 
 void mark_approximate(const Fitter& fitter, Diagnosis& out) {
   const bool misfits = out.noise_by_place || out.ratio_after >= 1 + chance_of(fitter, out.model);
-  if (!misfits || worst_gap(out.after) < kAtFloor) return;
+  if (!misfits || worst_gap(out.after) < fitter.settings().at_floor) return;
   for (FoundEffect& e : out.effects) {
     if (!e.ramp_mps3.empty()) continue;
     e.approximate = true;
@@ -269,9 +254,11 @@ void judge(const Fitter& fitter, Diagnosis& out) {
     gap += g.overall;
     floor += g.overall_floor;
   }
-  const bool fits = out.ratio_after < kAdequate || worst_gap(out.after) < kAtFloor;
+  const bool fits = out.ratio_after < fitter.settings().adequate ||
+                    worst_gap(out.after) < fitter.settings().at_floor;
   if (out.effects.empty()) {
-    const bool adequate = fits && (worst_gap(out.before) < kAdequateGap || out.rejected.empty());
+    const bool adequate =
+        fits && (worst_gap(out.before) < fitter.settings().twice_floor || out.rejected.empty());
     out.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
     if (!adequate && out.reason.empty() && fits_separately(fitter, out.linear, out.ratio_before))
       out.reason =
@@ -296,10 +283,11 @@ void judge(const Fitter& fitter, Diagnosis& out) {
         return e.index >= 0 && e.approximate &&
                !out.model.effects[static_cast<std::size_t>(e.index)].element_law();
       });
-  out.verdict =
-      !surrogate && !another && (fits || (fraction > kExplainsAll && gap < kNearFloor * floor))
-          ? Verdict::explained
-          : Verdict::partly_explained;
+  out.verdict = !surrogate && !another &&
+                        (fits || (fraction > fitter.settings().explains &&
+                                  gap < fitter.settings().near_floor * floor))
+                    ? Verdict::explained
+                    : Verdict::partly_explained;
 }
 
 std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions& options,

@@ -11,9 +11,6 @@ namespace framewatch::estimator {
 
 const char* verdict_word(Verdict verdict);
 
-/// Ratio of misfit to its expectation below which a model is adequate.
-constexpr double kAdequate = 1.25;
-
 /// Returns true if every segment fits a separate linear building, but not one common building.
 /// linear: the model of all segments.
 bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_before);
@@ -37,7 +34,7 @@ void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosi
 /// record, or a held-out gap more than a tenth larger. Also withdraws a single law at one place
 /// that leaves a held-out gap above 2.5 times its floor and is not of the known kind of force
 /// there. Returns true if it withdrew names.
-bool withdraw_worse(std::size_t holdout_from, Diagnosis& out);
+bool withdraw_worse(const SearchSettings& settings, std::size_t holdout_from, Diagnosis& out);
 
 /// Confidence grade of a name.
 enum class Grade {

@@ -12,6 +12,7 @@
 #include "daemon/tools/diagnosis/diagnose_verdict.h"
 #include "daemon/tools/diagnosis/evidence_section.h"
 #include "daemon/tools/diagnosis/next_measurement.h"
+#include "daemon/tools/diagnosis/search_section.h"
 #include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/trials/trial.h"
 #include "estimator/diagnose/verdict/evidence.h"
@@ -105,6 +106,21 @@ void expect_sound(const DiagnoseOutput& o) {
   const nlohmann::json json = nlohmann::json::parse(diagnosis_json(o));
   EXPECT_TRUE(json.contains("evidence"));
   EXPECT_EQ(json["measure_next"], next_measurement(o));
+}
+
+TEST(DiagnosisReport, DrawsTheSearch) {
+  Case c;
+  c.diagnosis.verdict = Verdict::explained;
+  FoundEffect& f = c.add(EffectKind::cubic_stiffness, 0);
+  EXPECT_TRUE(has(search_section(c.output()), "linear model 30; any force 1; all fitted 1."));
+  f.alternatives = {c.trial(EffectKind::bouc_wen, 3000), c.trial(EffectKind::pinching, 9000)};
+  f.alternatives.back().outcome = estimator::TrialOutcome::screened_out;  // no free run
+  const std::string drawn = search_section(c.output());
+  EXPECT_TRUE(has(drawn, "laws: cubic_stiffness")) << drawn;
+  EXPECT_EQ(count(drawn, "<circle"), 7U) << "a place, two laws, two models, two in the legend";
+  EXPECT_TRUE(has(diagnosis_report(c.output()), drawn));
+  c.diagnosis.map.clear();  // a channel's drift alone needs no search
+  EXPECT_EQ(search_section(c.output()), "");
 }
 
 TEST(DiagnosisReport, SaysTheSameEverywhere) {

@@ -99,7 +99,7 @@ Localisation left(Kind kind, double ratio) {
 }
 
 std::size_t contending(const std::vector<Localisation>& places) {
-  return contenders(places).size();
+  return contenders({}, places).size();
 }
 
 TEST(Contenders, AreNearTheBestAndLimitedPerKind) {
@@ -140,7 +140,8 @@ TEST(Chance, FallsWithTheSquareRootOfTheData) {
   const Model model = initial_model(plant);
   const Fitter of_one(plant, one, {}), of_four(plant, four, {});
   const double bins = static_cast<double>(one.front().bins());
-  EXPECT_NEAR(chance_of(of_one, model), kSignificant / std::sqrt(4 * bins - 8), 1e-12);
+  EXPECT_NEAR(chance_of(of_one, model), SearchSettings().significant / std::sqrt(4 * bins - 8),
+              1e-12);
   EXPECT_NEAR(chance_of(of_one, model) / chance_of(of_four, model), 2, 1e-12);
 }
 

@@ -36,7 +36,7 @@ ModelEffect effect_with(LawForm form, const std::vector<double>& values) {
 }
 
 std::string_view name(const ModelEffect& effect) {
-  return name_of(name_of_fit(effect, half_minute()));
+  return name_of(name_of_fit({}, effect, half_minute()));
 }
 
 TEST(NameOfFit, ExponentDistinguishesQuadraticFromCubic) {

@@ -30,7 +30,7 @@ TEST(ImplausibleMasses, AreExplainedByOneExtraMass) {
   EXPECT_EQ(name_of(trials[0].kind), "extra_mass");
   EXPECT_EQ(trials[0].place, test::at_crossing(kCrossing));
   EXPECT_NEAR(trials[0].model.effects.back().parameters[0].plain() / kMass_kg, 1, kMassOff);
-  EXPECT_LT(trials[0].cost, made.now.cost - kImplausibleMasses);
+  EXPECT_LT(trials[0].cost, made.now.cost - SearchSettings().implausible_masses);
   EXPECT_GT(trials[0].fraction, 0);
   EXPECT_LE(trials[0].fraction, 1);
 }

@@ -109,7 +109,7 @@ TEST(RemoveNotNeeded, RemovesTheEffectsThatAreNotInTheRecords) {
   ASSERT_EQ(found[0].index, 0);
   EXPECT_EQ(now.model.effects[0].place, test::in_frame(1));
   EXPECT_TRUE(now.model.free_clock.empty());
-  EXPECT_LT(now.cost, cost + 2 * kMinGain);
+  EXPECT_LT(now.cost, cost + 2 * SearchSettings().min_gain);
 }
 
 TEST(RemoveNotNeeded, KeepsTheEffectsOfTheRecords) {

@@ -121,7 +121,7 @@ TEST(AdoptTrials, AdoptsNothingThatMakesARecordWorse) {
   for (const double near : {-1.0, 1.0}) {
     std::vector<Trial> trials{excess.with_share(1)};
     trials[0].misfit[0] = kWorse * record + kNeeded + near;
-    EXPECT_EQ(worsens(trials[0], excess.made.now, kNeeded), near > 0);
+    EXPECT_EQ(worsens(excess.made.recorded.fitter, trials[0], excess.made.now, kNeeded), near > 0);
     EXPECT_EQ(excess.adopted(trials), near < 0);
   }
 }

@@ -30,6 +30,16 @@ Diagnosis diagnosed(const std::vector<Eigen::MatrixXd>& records,
   return diagnose(plant, small.segments(records), options);
 }
 
+TEST(DiagnoseOptions, TheNumbersOfTheSearchDecide) {
+  constexpr double kSurest = 0.7;
+  DiagnosisOptions options;
+  options.settings.surest = kSurest;
+  const Diagnosis d = diagnosed(records_with_gain(), options);
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_DOUBLE_EQ(d.effects[0].confidence, kSurest);
+  EXPECT_DOUBLE_EQ(d.settings.surest, kSurest);
+}
+
 TEST(DiagnoseOptions, NeverGivesAnExcludedName) {
   DiagnosisOptions options;
   options.without = {EffectKind::gain_error};

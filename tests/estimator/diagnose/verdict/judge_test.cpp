@@ -40,8 +40,8 @@ TEST(Judge, JudgesALinearBuildingWithoutEffects) {
   };
   const Linear all[] = {
       {"as good as noise", 1, 1, false, Verdict::adequate},
-      {"just so", kAdequate - kNear, 3, false, Verdict::adequate},
-      {"more than noise", kAdequate + kNear, 3, false, Verdict::unexplained},
+      {"just so", SearchSettings().adequate - kNear, 3, false, Verdict::adequate},
+      {"more than noise", SearchSettings().adequate + kNear, 3, false, Verdict::unexplained},
       {"more, but its gap is at its floor", 3, kAtFloor - kNear, false, Verdict::adequate},
       {"more, and its gap above it", 3, kAtFloor + kNear, false, Verdict::unexplained},
       {"a law was tried, the gap is small", 1, kAdequateGap - kNear, true, Verdict::adequate},
@@ -64,7 +64,7 @@ TEST(Judge, EffectsExplainAllOrPart) {
   };
   const double all_but = 1 + 100 * (1 - kTakesAll);
   const Explained all[] = {
-      {"nothing is left", 101, kAdequate - kNear, 4, Verdict::explained},
+      {"nothing is left", 101, SearchSettings().adequate - kNear, 4, Verdict::explained},
       {"the gap is at its floor", 101, 50, kAtFloor - kNear, Verdict::explained},
       {"nearly all, gap near its floor", 101, all_but - kNear, kNearFloor - kNear,
        Verdict::explained},
@@ -102,7 +102,7 @@ TEST(Judge, CallsRecordsThatFitOnlySeparatelyDifferentBuildings) {
   Diagnosis d;
   d.linear = fit.model;
   d.ratio_before = d.ratio_after = fit.total_misfit() / recorded.fitter.expected(fit.model);
-  ASSERT_GT(d.ratio_before, kAdequate);
+  ASSERT_GT(d.ratio_before, SearchSettings().adequate);
   d.before = d.after = {gap_with(9)};
   judge(recorded.fitter, d);
   EXPECT_EQ(d.verdict, Verdict::unexplained);
@@ -199,7 +199,7 @@ TEST(Withdraw, RemovesNamesWhoseModelIsWorse) {
     d.ratio_before = 9;
     d.ratio_after = 2;
     d.effects.emplace_back();
-    EXPECT_EQ(withdraw_worse(1, d), f.withdrawn) << f.what;
+    EXPECT_EQ(withdraw_worse({}, 1, d), f.withdrawn) << f.what;
     EXPECT_EQ(d.effects.empty(), f.withdrawn) << f.what;
     EXPECT_EQ(d.rejected.size(), f.withdrawn ? 1U : 0U) << f.what;
     EXPECT_EQ(d.reason.empty(), !f.withdrawn) << f.what;
@@ -207,7 +207,7 @@ TEST(Withdraw, RemovesNamesWhoseModelIsWorse) {
     EXPECT_DOUBLE_EQ(d.ratio_after, f.withdrawn ? 9 : 2) << f.what;
   }
   Diagnosis none;
-  EXPECT_FALSE(withdraw_worse(1, none));
+  EXPECT_FALSE(withdraw_worse({}, 1, none));
 }
 
 /// The gap of a diverging run is missing; the mean of the others must not count as a good gap.
@@ -218,7 +218,7 @@ TEST(Withdraw, RemovesEffectsThatMakeAnyRunDiverge) {
   for (Gap& g : d.before) g.overall = 0.5;
   d.after[0].overall = 0.1;
   d.effects.emplace_back();
-  EXPECT_TRUE(withdraw_worse(1, d));
+  EXPECT_TRUE(withdraw_worse({}, 1, d));
   EXPECT_TRUE(d.effects.empty());
   EXPECT_EQ(d.after.size(), 2U);
 }
@@ -257,7 +257,7 @@ TEST(Withdraw, RemovesALawThatLeavesMuchAndShowsAnotherKind) {
     if (f.seen != Seen::nothing)
       where.kind.emplace().kind =
           f.seen == Seen::its_kind ? LawKind::hysteretic : LawKind::dissipative;
-    EXPECT_EQ(withdraw_worse(1, d), f.withdrawn) << f.what;
+    EXPECT_EQ(withdraw_worse({}, 1, d), f.withdrawn) << f.what;
     EXPECT_EQ(d.effects.empty(), f.withdrawn) << f.what;
   }
 }

@@ -78,9 +78,9 @@ TEST(NearestLawOfAPlace, MayBeAnyFunctionOfTheDeformationIfItHolds) {
   const Left elastic(LawKind::elastic), impact(LawKind::impact), other(LawKind::hysteretic);
   std::vector<Trial> gap{elastic.law(EffectKind::two_sided_gap, 0.9)};
   const Trial spring = impact.law(EffectKind::cubic_stiffness, 0.98);
-  EXPECT_TRUE(is_of_the_kind_there(gap[0], elastic.where));
-  EXPECT_TRUE(is_of_the_kind_there(spring, impact.where));
-  EXPECT_FALSE(is_of_the_kind_there(spring, other.where));
+  EXPECT_TRUE(is_of_the_kind_there({}, gap[0], elastic.where));
+  EXPECT_TRUE(is_of_the_kind_there({}, spring, impact.where));
+  EXPECT_FALSE(is_of_the_kind_there({}, spring, other.where));
   EXPECT_FALSE(elastic.first(gap)) << "it does not hold, and is of another sort";
 }
 
@@ -93,10 +93,10 @@ TEST(NearestLawOfAPlace, MayBeOfAnotherKindIfItLeavesFarLess) {
   most[0].fraction = 0.95;
   less[0].fraction = 0.9;
   EXPECT_TRUE(left.first(most));
-  EXPECT_TRUE(is_of_the_kind_there(most[0], left.where));
+  EXPECT_TRUE(is_of_the_kind_there({}, most[0], left.where));
   EXPECT_FALSE(left.first(less));
-  EXPECT_FALSE(is_of_the_kind_there(less[0], left.where));
-  EXPECT_FALSE(is_of_the_kind_there(most[0], {}));
+  EXPECT_FALSE(is_of_the_kind_there({}, less[0], left.where));
+  EXPECT_FALSE(is_of_the_kind_there({}, most[0], {}));
 }
 
 TEST(NearestLawOfAPlace, IsRefutedByAForceOfAnotherKind) {
@@ -124,11 +124,12 @@ TEST(NearestLawOfAPlace, IsRefutedByAForceOfAnotherKind) {
   for (const Said& said : all) {
     Left left(said.kind);
     const Trial there = left.law(said.law, 1);
-    EXPECT_EQ(contradicts_the_kind(there, left.where), said.contradicted)
+    EXPECT_EQ(contradicts_the_kind({}, there, left.where), said.contradicted)
         << law_kind_word(said.kind) << " " << describe(said.law).name;
-    EXPECT_FALSE(contradicts_the_kind(left.law(said.law, 1, test::in_frame(kOther)), left.where));
+    EXPECT_FALSE(
+        contradicts_the_kind({}, left.law(said.law, 1, test::in_frame(kOther)), left.where));
     left.where.front().kind.reset();
-    EXPECT_FALSE(contradicts_the_kind(there, left.where));
+    EXPECT_FALSE(contradicts_the_kind({}, there, left.where));
   }
 }
 
@@ -136,8 +137,8 @@ TEST(NearestLawOfAPlace, MustLeaveFarLessIfTheKindIsUncertain) {
   Left left(LawKind::elastic);
   left.where.front().kind->share[static_cast<std::size_t>(LawKind::elastic)] = 0.8;
   const Trial loop = left.law(EffectKind::pinching, 1);
-  EXPECT_TRUE(contradicts_the_kind(loop, left.where, 0.05));
-  EXPECT_FALSE(contradicts_the_kind(loop, left.where, 0.01));
+  EXPECT_TRUE(contradicts_the_kind({}, loop, left.where, 0.05));
+  EXPECT_FALSE(contradicts_the_kind({}, loop, left.where, 0.01));
 }
 
 TEST(NearestLawOfAPlace, AnExternalForceIsRefutedByOneThatFollowsTheMotion) {
@@ -147,11 +148,11 @@ TEST(NearestLawOfAPlace, AnExternalForceIsRefutedByOneThatFollowsTheMotion) {
     Left left(kind);
     Trial force = left.law(EffectKind::unmeasured_force, 1, test::at_node(kOther));
     force.model.effects.back().form = LawForm::harmonic;
-    EXPECT_FALSE(contradicts_the_kind(force, left.where)) << "it has a frequency";
+    EXPECT_FALSE(contradicts_the_kind({}, force, left.where)) << "it has a frequency";
     force.model.effects.back().form = LawForm::broadband;
-    EXPECT_EQ(contradicts_the_kind(force, left.where), contradicted) << law_kind_word(kind);
+    EXPECT_EQ(contradicts_the_kind({}, force, left.where), contradicted) << law_kind_word(kind);
     left.where.insert(left.where.begin(), WhereEntry());
-    EXPECT_FALSE(contradicts_the_kind(force, left.where)) << "another place is likelier";
+    EXPECT_FALSE(contradicts_the_kind({}, force, left.where)) << "another place is likelier";
   }
 }
 
