@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """capture.py live URL LIGHT DARK
-   capture.py report FILE OUT END WIDTH
+   capture.py report FILE OUT START END WIDTH
 
 Takes pictures with headless Chromium, as WebP.
 `live` waits until the live page at URL names an element that lost stiffness, then takes the page in both color schemes.
 It hides damping, modes and the list of drifts, so that verdict, building and element fit one picture.
-`report` lays FILE out WIDTH pixels wide and takes it from its top to the bottom of the element END (JavaScript)."""
+`report` lays FILE out WIDTH pixels wide and takes it from the top of the element START to the bottom of the element END
+(both JavaScript)."""
 import base64
 import os
 import sys
@@ -29,18 +30,18 @@ def emulate(browser, tab, width, scheme):
                 mobile=False)
 
 
-def take(browser, tab, width, bottom, out):
-    """Writes the page from its top to `bottom` (CSS pixels), at the best quality that keeps the limit."""
+def take(browser, tab, width, bottom, out, top=0):
+    """Writes the page from `top` to `bottom` (CSS pixels), at the best quality that keeps the limit."""
     for quality in (95, 90, 85, 80, 70, 60):
         data = browser.ask("Page.captureScreenshot", tab.session, format="webp", quality=quality,
                            captureBeyondViewport=True,
-                           clip={"x": 0, "y": 0, "width": width, "height": bottom, "scale": 1})["data"]
+                           clip={"x": 0, "y": top, "width": width, "height": bottom - top, "scale": 1})["data"]
         picture = base64.b64decode(data)
         if len(picture) <= LIMIT_BYTES:
             break
     with open(out, "wb") as file:
         file.write(picture)
-    print(f"{out}: {len(picture)} bytes, {width} x {round(bottom)}, quality {quality}")
+    print(f"{out}: {len(picture)} bytes, {width} x {round(bottom - top)}, quality {quality}")
 
 
 def take_live(browser, url, light, dark):
@@ -58,16 +59,18 @@ def take_live(browser, url, light, dark):
         time.sleep(1)
 
 
-def take_report(browser, file, out, end, width):
+def take_report(browser, file, out, start, end, width):
     tab = browser.open("file://" + os.path.abspath(file))
     emulate(browser, tab, int(width), "light")
     if not tab.until("document.readyState === 'complete'"):
         sys.exit(f"{file} does not load")
-    take(browser, tab, int(width), tab.value(f"({end}).getBoundingClientRect().bottom + scrollY + 24"), out)
+    bottom = tab.value(f"({end}).getBoundingClientRect().bottom + scrollY + 24")
+    top = tab.value(f"({start}).getBoundingClientRect().top + scrollY")
+    take(browser, tab, int(width), bottom, out, top)
 
 
 def main():
-    takes = {"live": (take_live, 5), "report": (take_report, 6)}
+    takes = {"live": (take_live, 5), "report": (take_report, 7)}
     action, count = takes.get(sys.argv[1] if len(sys.argv) > 1 else "", (None, 0))
     if len(sys.argv) != count:
         sys.exit(__doc__)

@@ -10,7 +10,6 @@
 #include "daemon/base/html_page.h"
 #include "daemon/base/svg_plot.h"
 #include "estimator/diagnose/verdict/evidence.h"
-#include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -37,16 +36,21 @@ Step step_of_laws(const DiagnoseOutput& o, std::string name,
 
 std::vector<Step> steps_of(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
-  std::vector<Step> out{{"linear model", {}, {d.ratio_before}}, {"any force", {}, {}}};
+  std::vector<Step> out{{"linear", {}, {d.ratio_before}}, {"places", {}, {}}};
   for (const estimator::WhereEntry& w : d.map) out.back().tried.push_back(w.ratio);
+  std::vector<const estimator::FoundEffect*> chosen;  // of a pair, only the first
   for (const estimator::FoundEffect& f : d.effects)
-    if (!f.alternatives.empty())
-      out.push_back(step_of_laws(o, fmt::format("laws: {}", name_of(f.chosen.kind)), f.alternatives,
-                                 std::isnan(f.chosen.fraction) ? nullptr : &f.chosen));
+    if (!f.alternatives.empty() &&
+        (chosen.empty() || !f.chosen.second || f.chosen.cost != chosen.back()->chosen.cost))
+      chosen.push_back(&f);
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    out.push_back(step_of_laws(
+        o, chosen.size() > 1 ? fmt::format("laws {}", i + 1) : "laws", chosen[i]->alternatives,
+        std::isnan(chosen[i]->chosen.fraction) ? nullptr : &chosen[i]->chosen));
   if (d.effects.empty())
     out.push_back(step_of_laws(o, "laws", d.rejected, nullptr));
   else
-    out.push_back({"all fitted", {}, {d.ratio_after}});
+    out.push_back({"model", {}, {d.ratio_after}});
   std::erase_if(out, [](const Step& s) { return s.tried.empty() && s.kept.empty(); });
   return out;
 }
@@ -55,7 +59,7 @@ double least(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-/// Returns "linear model 30; any force 1.02 to 29; ...".
+/// Returns "linear 30; places 1.02 to 29; ...".
 std::string told(const std::vector<Step>& steps) {
   std::string out;
   for (const Step& s : steps) {
@@ -88,7 +92,7 @@ std::string search_section(const DiagnoseOutput& o) {
   }
   SvgAxis left{"left unexplained, times noise"};
   left.logarithmic = true;
-  SvgPlot plot("how the search went", names, left);
+  SvgPlot plot("what every candidate leaves", names, left, 640, 340);
   plot.add(tried);
   plot.add(kept);
   plot.add_rule(1);
@@ -96,7 +100,8 @@ std::string search_section(const DiagnoseOutput& o) {
   return "<h2>Search</h2>\n" +
          html_figure(
              {plot.svg()},
-             "Each ring is a place with an arbitrary force, or a law that was fitted. At the "
+             "From left to right: the linear model, an arbitrary force at each place, the "
+             "laws that were fitted for each effect, and the model with all effects. At the "
              "line only the sensors' noise is left.");
 }
 
