@@ -102,10 +102,8 @@ void SearchSetting::set(SearchSettings& settings, double value) const {
   std::visit(
       [&](auto at) {
         using Number = std::remove_reference_t<decltype(settings.*at)>;
-        if constexpr (std::is_same_v<Number, int>)
-          settings.*at = static_cast<int>(std::lround(within));
-        else
-          settings.*at = within;
+        settings.*at =
+            static_cast<Number>(std::is_integral_v<Number> ? std::round(within) : within);
       },
       member);
 }

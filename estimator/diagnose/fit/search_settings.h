@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <variant>
 
@@ -98,17 +99,17 @@ struct SearchSettings {
   double small_start = 0.1;  ///< of an effect's size, or of the design
 
   // How many are tried.
-  int places = 5;             ///< places that are iterated, or whose laws are fitted
-  int of_one_sort = 3;        ///< places of one sort among them
-  int as_likely_places = 16;  ///< further places that are as likely
-  int pair_leaders = 6;       ///< places that are paired with every other
-  int laws = 6;               ///< laws of a place, labels, sets of causes that are fitted
-  int finalists = 3;          ///< of a place, that get free runs; rivals; causes
-  int laws_of_pair = 2;       ///< laws of each place of a pair
-  int causes = 9;             ///< laws among which several causes are searched for
-  int labels = 24;            ///< labels, or axes in pairs
-  int linear_effects = 8;     ///< linear effects in place of implausible masses
-  int dampers = 4;            ///< dampers in place of modal damping
+  std::size_t places = 5;             ///< places that are iterated, or whose laws are fitted
+  std::size_t of_one_sort = 3;        ///< places of one sort among them
+  std::size_t as_likely_places = 16;  ///< further places that are as likely
+  std::size_t pair_leaders = 6;       ///< places that are paired with every other
+  std::size_t laws = 6;               ///< laws of a place, labels, sets of causes that are fitted
+  std::size_t finalists = 3;          ///< of a place, that get free runs; rivals; causes
+  std::size_t laws_of_pair = 2;       ///< laws of each place of a pair
+  std::size_t causes = 9;             ///< laws among which several causes are searched for
+  std::size_t labels = 24;            ///< labels, or axes in pairs
+  std::size_t linear_effects = 8;     ///< linear effects in place of implausible masses
+  std::size_t dampers = 4;            ///< dampers in place of modal damping
 
   // Steps of a fit.
   int first_steps = 3;     ///< before candidates are compared
@@ -121,7 +122,8 @@ struct SearchSettings {
 /// One number of SearchSettings and the range outside which it makes no sense.
 struct SearchSetting {
   const char* name;
-  std::variant<double SearchSettings::*, int SearchSettings::*> member;
+  std::variant<double SearchSettings::*, int SearchSettings::*, std::size_t SearchSettings::*>
+      member;
   double low, high;
 
   double of(const SearchSettings& settings) const;

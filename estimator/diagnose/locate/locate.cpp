@@ -144,9 +144,9 @@ std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
                                      const Parallel& parallel) {
   const std::vector<Localisation> all = one_step(fitter, now, lists, parallel);
   const SearchSettings& settings = fitter.settings();
-  const auto finalists = static_cast<std::size_t>(settings.finalists);
   std::vector<const Localisation*> starts;
-  for (std::size_t i = 0; i < std::min(finalists, all.size()); ++i) starts.push_back(&all[i]);
+  for (std::size_t i = 0; i < std::min(settings.finalists, all.size()); ++i)
+    starts.push_back(&all[i]);
   return iterated(
       fitter, now, starts, settings.steps,
       [&](const Localisation& best) { return wide_margin_of(settings, best); }, parallel);
@@ -175,7 +175,6 @@ double chance_of(const Fitter& fitter, const Model& model) {
 
 Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel) {
   const SearchSettings& settings = fitter.settings();
-  const auto of_one_sort = static_cast<std::size_t>(settings.of_one_sort);
   Located out;
   std::vector<std::vector<CandidatePlace>> lists;
   for (const CandidatePlace& s : candidate_places_of(fitter.plant(), now.model))
@@ -187,9 +186,10 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
   for (std::size_t i = 0; i < out.once.size(); ++i) {
     const CandidatePlace& place = out.once[i].candidate_places.front();
     // In a large building, both directions of a mass rank above either direction alone.
-    const bool alone = fitter.plant().is_large() && place.size() == 1 && single < of_one_sort;
-    const bool more = (is_global(place) && global < of_one_sort) || alone;
-    if (i >= static_cast<std::size_t>(settings.places) && !more) continue;
+    const bool alone =
+        fitter.plant().is_large() && place.size() == 1 && single < settings.of_one_sort;
+    const bool more = (is_global(place) && global < settings.of_one_sort) || alone;
+    if (i >= settings.places && !more) continue;
     if (nothing && i > 0) break;
     global += is_global(place);
     single += place.size() == 1;
@@ -204,8 +204,7 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
 std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
                                        const std::vector<Localisation>& once,
                                        const Parallel& parallel) {
-  const auto leaders = static_cast<std::size_t>(fitter.settings().pair_leaders),
-             axes_of_pairs = static_cast<std::size_t>(fitter.settings().labels);
+  const SearchSettings& settings = fitter.settings();
   std::vector<CandidatePlace> all = of_one_direction(once);
   if (fitter.plant().is_large() && all.size() > kMaxOfPairs) all.resize(kMaxOfPairs);
   std::vector<std::vector<CandidatePlace>> lists;
@@ -213,10 +212,11 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
   std::vector<char> leading_axis(all.size(), 0);
   std::size_t axes = 0;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].kind == CandidatePlace::Kind::axis) leading_axis[i] = axes++ < axes_of_pairs;
+    if (all[i].kind == CandidatePlace::Kind::axis) leading_axis[i] = axes++ < settings.labels;
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j)
-      if (i < leaders || (leading_axis[i] && leading_axis[j])) lists.push_back({all[i], all[j]});
+      if (i < settings.pair_leaders || (leading_axis[i] && leading_axis[j]))
+        lists.push_back({all[i], all[j]});
   return best_lists(fitter, now, lists, parallel);
 }
 
@@ -234,14 +234,13 @@ std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
   if (located.once.empty() || located.places.empty()) return {};
   const double chance = chance_of(fitter, now.model);
   const double most = located.once.front().ratio + chance;
-  const auto most_places = static_cast<std::size_t>(fitter.settings().as_likely_places);
   std::vector<const Localisation*> starts;
   for (const Localisation& l : located.once) {
     const CandidatePlace& s = l.candidate_places.front();
     const bool seen = std::any_of(
         located.places.begin(), located.places.end(),
         [&](const Localisation& place) { return place.candidate_places.front().place == s.place; });
-    if (l.ratio > most || starts.size() >= most_places) break;
+    if (l.ratio > most || starts.size() >= fitter.settings().as_likely_places) break;
     if (s.kind != CandidatePlace::Kind::element && !seen) starts.push_back(&l);
   }
   const double limit = located.places.front().ratio + chance;
@@ -254,8 +253,6 @@ std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
 
 std::vector<Localisation> contenders(const SearchSettings& settings,
                                      const std::vector<Localisation>& places) {
-  const auto of_one_sort = static_cast<std::size_t>(settings.of_one_sort),
-             most = static_cast<std::size_t>(settings.places);
   std::vector<Localisation> out;
   std::map<CandidatePlace::Kind, int> of_kind;
   if (places.empty()) return out;
@@ -273,7 +270,8 @@ std::vector<Localisation> contenders(const SearchSettings& settings,
     const bool moment = place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
     if (place.ratio > (moment ? wide : limit)) continue;
     const bool another_kind = of_kind[place.candidate_places.front().kind]++ == 0;
-    const bool worth = out.size() < of_one_sort || (another_kind && out.size() < most);
+    const bool worth =
+        out.size() < settings.of_one_sort || (another_kind && out.size() < settings.places);
     if (worth || moment) out.push_back(place);
   }
   return out;

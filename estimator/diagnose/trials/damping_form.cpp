@@ -171,7 +171,7 @@ bool one_damper_does(const TrialContext& context, const FitResult& with) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return gains[a].cost > gains[b].cost; });
-  order.resize(std::min(order.size(), static_cast<std::size_t>(context.fitter.settings().dampers)));
+  order.resize(std::min(order.size(), context.settings().dampers));
   double ratios = 0;
   for (const ModelEffect& e : with.model.effects)
     ratios += e.form == LawForm::modal_damping && e.parameters[0].plain() > kNoRatio;
@@ -182,7 +182,7 @@ bool one_damper_does(const TrialContext& context, const FitResult& with) {
     one.effects.push_back(dampers[i]);
     one.effects.back().parameters[0].value = gains[i].value;
     const FitResult fit =
-        context.fitter.fit(one, now.motion, thorough(one, context.fitter.settings().long_steps));
+        context.fitter.fit(one, now.motion, thorough(one, context.settings().long_steps));
     return fit.good && fit.cost < enough;
   });
 }

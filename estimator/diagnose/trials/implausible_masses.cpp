@@ -42,12 +42,11 @@ std::vector<Proposal> promising(const TrialContext& context, const Located& loca
   const std::vector<LinearGain> gains = linear_gains(context, effects);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (gains[i].value > 0 && gains[i].cost > context.fitter.settings().half * needed)
-      order.push_back(i);
+    if (gains[i].value > 0 && gains[i].cost > context.settings().half * needed) order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return gains[a].cost > gains[b].cost; });
-  if (order.size() > static_cast<std::size_t>(context.fitter.settings().linear_effects))
-    order.resize(static_cast<std::size_t>(context.fitter.settings().linear_effects));
+  if (order.size() > context.settings().linear_effects)
+    order.resize(context.settings().linear_effects);
   std::vector<Proposal> out;
   for (const std::size_t i : order) {
     all[i].model.effects.back().parameters.front().value = gains[i].value;
@@ -60,7 +59,7 @@ std::vector<Proposal> promising(const TrialContext& context, const Located& loca
 
 std::vector<Trial> implausible_masses(const TrialContext& context, const Located& located) {
   const Model& model = context.now.model;
-  const SearchSettings& settings = context.fitter.settings();
+  const SearchSettings& settings = context.settings();
   const double sigma = context.fitter.tolerances().mass;
   if (sigma <= 0) return {};
   const double by_chance = 0.5 * static_cast<double>(model.mass_change.size());

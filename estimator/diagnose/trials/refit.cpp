@@ -76,14 +76,14 @@ Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
     if (strength(r) < strength(weakest)) weakest = r;
   const std::vector<RecordSegment> one{all[weakest]};
   const Fitter alone = c.fitter.with(one);
-  const FitResult run = alone.fit(model, {}, thorough(model, c.fitter.settings().steps));
+  const FitResult run = alone.fit(model, {}, thorough(model, c.settings().steps));
   return run.good ? run.model : model;
 }
 
 Trial refined(const TrialContext& c, const Trial& trial, const Model& from) {
   Model start = from;
   free_shapes(start);
-  FitResult run = c.fitter.fit(start, {}, thorough(start, c.fitter.settings().longest_steps));
+  FitResult run = c.fitter.fit(start, {}, thorough(start, c.settings().longest_steps));
   if (!run.good) return trial;
   if (ends_with_harmonic(run.model)) run = with_onsets(c.fitter, std::move(run));
   Trial out = trial;

@@ -47,7 +47,7 @@ Localisation localise_law(const TrialContext& context, const Located& located,
   for (const Localisation& l : located.places)
     if (own.size() == 1 && l.candidate_places.front().place == own.front().place) return l;
   return localise(context.fitter, context.now.model, context.now.motion, own,
-                  context.fitter.settings().steps);
+                  context.settings().steps);
 }
 
 }  // namespace
@@ -85,13 +85,12 @@ void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>
         places_of_law(located, e.chosen.place, context.fitter.plant().structure);
     if (own.empty()) continue;
     const Localisation law = localise_law(context, located, own);
-    if (law.ratio - 1 > context.fitter.settings().as_likely * std::max(least, chance) + chance)
-      continue;
+    if (law.ratio - 1 > context.settings().as_likely * std::max(least, chance) + chance) continue;
     if (own.size() == 1 && law.ratio > 1 + chance) {
       std::vector<Localisation> beside =
           locate_beside(context.fitter, context.now, located.once, own.front(), context.parallel);
       if (!beside.empty() &&
-          beside.front().ratio - 1 < context.fitter.settings().pair_leaves * (law.ratio - 1)) {
+          beside.front().ratio - 1 < context.settings().pair_leaves * (law.ratio - 1)) {
         located.places = std::move(beside);
         return;
       }
@@ -103,7 +102,7 @@ void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>
 
 std::vector<Trial> trials_of_places(const TrialContext& context, const Located& located,
                                     bool small) {
-  std::vector<Localisation> places = contenders(context.fitter.settings(), located.places);
+  std::vector<Localisation> places = contenders(context.settings(), located.places);
   if (small) std::erase_if(places, is_element);
   const std::vector<Localisation> more =
       as_likely(context.fitter, context.now, located, context.parallel);
@@ -137,9 +136,9 @@ std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& l
   const Localisation& best = located.places.front();
   const std::vector<Localisation> pairs =
       locate_pairs(context.fitter, context.now, located.once, context.parallel);
-  const double limit = best.ratio > context.fitter.settings().one_place
-                           ? 1 + context.fitter.settings().pair_leaves * (best.ratio - 1)
-                           : context.fitter.settings().one_place;
+  const double limit = best.ratio > context.settings().one_place
+                           ? 1 + context.settings().pair_leaves * (best.ratio - 1)
+                           : context.settings().one_place;
   std::vector<Trial> out;
   if (pairs.empty() || pairs.front().ratio >= limit) return out;
   bound = std::min(context.now.cost, bound_of(context.fitter.plant(), pairs.front()));

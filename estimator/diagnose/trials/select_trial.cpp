@@ -34,7 +34,7 @@ std::vector<const Trial*> rivals_of(const SearchSettings& settings, const FoundE
         t.model.effects.empty() || !t.model.effects.back().element_law())
       continue;
     out.push_back(&t);
-    if (out.size() == static_cast<std::size_t>(settings.finalists)) break;
+    if (out.size() == settings.finalists) break;
   }
   return out;
 }
@@ -54,15 +54,13 @@ double limit_of(const SearchSettings& settings, const Trial& best, double enough
 /// rivals.
 void refine_leading(const TrialContext& context, double enough, double needed,
                     std::vector<Trial>& trials) {
-  const SearchSettings& settings = context.fitter.settings();
+  const SearchSettings& settings = context.settings();
   const Trial& best = trials.front();
   const bool done = best.cost <= enough && !is_arbitrary_force(best);
   const double limit =
       done ? best.cost + settings.behind * needed : limit_of(settings, best, enough);
   run_all(
-      context.parallel,
-      static_cast<int>(std::min(static_cast<std::size_t>(settings.finalists), trials.size())),
-      [&](int i) {
+      context.parallel, static_cast<int>(std::min(settings.finalists, trials.size())), [&](int i) {
         Trial& t = trials[static_cast<std::size_t>(i)];
         if (t.outcome != TrialOutcome::fitted || t.fraction <= settings.promises || t.cost > limit)
           return;
@@ -75,10 +73,9 @@ void refine_leading(const TrialContext& context, double enough, double needed,
 
 /// Refits the leading trials, starting from a fit to the record with the weakest effect.
 void approach(const TrialContext& context, double enough, std::vector<Trial>& trials) {
-  const SearchSettings& settings = context.fitter.settings();
+  const SearchSettings& settings = context.settings();
   const double limit = limit_of(settings, trials.front(), enough);
-  run_all(context.parallel,
-          static_cast<int>(std::min(static_cast<std::size_t>(settings.finalists), trials.size())),
+  run_all(context.parallel, static_cast<int>(std::min(settings.finalists, trials.size())),
           [&](int i) {
             Trial& t = trials[static_cast<std::size_t>(i)];
             if (t.outcome != TrialOutcome::fitted || t.fraction <= settings.promises ||
@@ -118,8 +115,7 @@ bool is_nearest_law(const TrialContext& context, const Trial& trial) {
       effects.size() <= now.model.effects.size() || !effects.back().element_law())
     return false;
   const double noise = context.fitter.expected(now.model);
-  return now.cost - trial.cost >
-             context.fitter.settings().explains_much * (now.total_misfit() - noise) &&
+  return now.cost - trial.cost > context.settings().explains_much * (now.total_misfit() - noise) &&
          !worsens(context.fitter, trial, now, noise * chance_of(context.fitter, now.model));
 }
 
@@ -128,7 +124,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
   if (std::none_of(trials.begin(), trials.end(),
                    [](const Trial& t) { return t.outcome == TrialOutcome::fitted; }))
     return false;
-  const SearchSettings& settings = context.fitter.settings();
+  const SearchSettings& settings = context.settings();
   const FitResult& now = context.now;
   const double to_explain = now.cost - bound;
   // Penalties: two effects must beat one by more than chance, an arbitrary force must beat a law,
@@ -166,7 +162,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
 bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitResult& now) {
   if (effect.index < 0 || effect.chosen.second) return false;
   const auto index = static_cast<std::size_t>(effect.index);
-  const std::vector<const Trial*> others = rivals_of(context.fitter.settings(), effect);
+  const std::vector<const Trial*> others = rivals_of(context.settings(), effect);
   if (!now.model.effects[index].element_law() || others.empty()) return false;
   const Plant& plant = context.fitter.plant();
   FitResult without = now;
@@ -175,7 +171,7 @@ bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitRes
                            context.progress};
   const auto as_trial = [&](const FitResult& fit) {
     Trial t = effect.chosen;
-    t.kind = name_of_fit(context.fitter.settings(), fit.model.effects[index],
+    t.kind = name_of_fit(context.settings(), fit.model.effects[index],
                          context.fitter.segments().front());
     t.cost = fit.cost;
     t.misfit = fit.misfit;
@@ -207,7 +203,7 @@ bool choose_replacement(const TrialContext& context, FoundEffect& effect, FitRes
   const bool another = all.front().trial.kind != own.kind;
   std::vector<Trial> trials;
   for (Rival& r : all) trials.push_back(r.trial);
-  FoundEffect fresh = effect_of(context.fitter.settings(), trials);
+  FoundEffect fresh = effect_of(context.settings(), trials);
   fresh.confidence = std::min(fresh.confidence, effect.confidence);
   if (!another) {
     effect.confidence = fresh.confidence;

@@ -45,10 +45,8 @@ bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& o
 /// Returns laws that may be causes, best first, one of every name and place.
 std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
   const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
-  const SearchSettings& settings = c.fitter.settings();
-  const auto finalists = static_cast<std::size_t>(settings.finalists);
-  const std::size_t most =
-      std::clamp(kMaxWork / equations, finalists, static_cast<std::size_t>(settings.causes));
+  const SearchSettings& settings = c.settings();
+  const std::size_t most = std::clamp(kMaxWork / equations, settings.finalists, settings.causes);
   std::vector<const Trial*> out;
   for (const Trial& t : tried) {
     const bool otherwise = std::any_of(out.begin(), out.end(),
@@ -78,7 +76,7 @@ Model extended(const TrialContext& c, const Model& model, const Trial& t, Start 
   const auto known = static_cast<std::ptrdiff_t>(c.now.model.effects.size());
   out.effects.insert(out.effects.end(), t.model.effects.begin() + known, t.model.effects.end());
   free_shapes(out);
-  const double part = start == Start::little ? c.fitter.settings().small_start : 1;
+  const double part = start == Start::little ? c.settings().small_start : 1;
   for (std::size_t e = model.effects.size(); e < out.effects.size(); ++e)
     scale_amplitude(part, out.effects[e]);
   const auto add = [&](std::vector<int> Model::*freed, Eigen::VectorXd Model::*errors) {
@@ -95,7 +93,7 @@ Model extended(const TrialContext& c, const Model& model, const Trial& t, Start 
     out.mass_change = t.model.mass_change;
   } else if (start == Start::changed) {
     out.theta = (out.theta + t.model.theta - c.now.model.theta)
-                    .cwiseMax(c.fitter.settings().small_start * c.fitter.plant().design);
+                    .cwiseMax(c.settings().small_start * c.fitter.plant().design);
   }
   return out;
 }
@@ -104,8 +102,7 @@ class Selection {
  public:
   Selection(const TrialContext& context, const std::vector<Trial>& tried, std::size_t holdout_from)
       : context_(context),
-        settings_(context.fitter.settings()),
-        finalists_(static_cast<std::size_t>(settings_.finalists)),
+        settings_(context.settings()),
         tried_(possible(context, tried)),
         holdout_from_(std::min(holdout_from, context.fitter.segments().size())),
         seen_(context.fitter.segments().begin(),
@@ -118,13 +115,13 @@ class Selection {
     none_ = judged({}, judged_fit(train_, starts, settings_.long_steps, context_.parallel).model);
     CauseSet best = none_;
     std::vector<CauseSet> kept{none_};
-    for (std::size_t size = 1; size <= finalists_ && !kept.empty(); ++size) {
+    for (std::size_t size = 1; size <= settings_.finalists && !kept.empty(); ++size) {
       context_.progress("several causes");
       kept = larger(kept);
       const auto leads =
           std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });
       if (leads != kept.end() && is_worth(*leads, best)) best = *leads;
-      if (kept.size() > finalists_) kept.resize(finalists_);
+      if (kept.size() > settings_.finalists) kept.resize(settings_.finalists);
     }
     return result(without_redundant(std::move(best)));
   }
@@ -228,7 +225,6 @@ class Selection {
   /// better half a few more, then the best to convergence.
   std::vector<CauseSet> larger(const std::vector<CauseSet>& sets) {
     const std::vector<Extension> all = extensions(sets);
-    const auto laws = static_cast<std::size_t>(settings_.laws);
     std::vector<CauseSet> out(all.size());
     run_all(context_.parallel, static_cast<int>(all.size()), [&](int i) {
       const Extension& e = all[static_cast<std::size_t>(i)];
@@ -244,7 +240,7 @@ class Selection {
                        [](const CauseSet& a, const CauseSet& b) { return a.all < b.all; });
     };
     best_first();
-    if (const std::size_t half = (out.size() + 1) / 2; half > laws) out.resize(half);
+    if (const std::size_t half = (out.size() + 1) / 2; half > settings_.laws) out.resize(half);
     run_all(context_.parallel, static_cast<int>(out.size()), [&](int i) {
       CauseSet& s = out[static_cast<std::size_t>(i)];
       s = judged(s.members, free_run_fit(train_, {s.model}, settings_.first_steps, false).model);
@@ -256,7 +252,7 @@ class Selection {
       best_first();
     };
     sort();
-    if (out.size() > laws) out.resize(laws);
+    if (out.size() > settings_.laws) out.resize(settings_.laws);
     run_all(context_.parallel, static_cast<int>(out.size()), [&](int i) {
       CauseSet& s = out[static_cast<std::size_t>(i)];
       s = finished(s);
@@ -340,7 +336,6 @@ class Selection {
 
   const TrialContext& context_;
   const SearchSettings& settings_;
-  std::size_t finalists_;
   std::vector<const Trial*> tried_;
   std::size_t holdout_from_;
   std::vector<RecordSegment> seen_;

@@ -50,6 +50,8 @@ struct TrialContext {
   /// Gets every trial that has a fit, also those whose comparison the end of the search interrupts;
   /// nullptr: nothing is kept.
   std::vector<Trial>* fitted = nullptr;
+
+  const SearchSettings& settings() const { return fitter.settings(); }
 };
 
 /// Returns true if an effect is an axis' freed gain or clock instead of one of the model's effects.

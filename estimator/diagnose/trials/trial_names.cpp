@@ -38,7 +38,7 @@ double highest_hz(const Fitter& fitter) {
 bool is_no_oscillator(const TrialContext& c, const ModelEffect& effect) {
   const EffectPlace& place = effect.place;
   return effect.parameters[1].plain() > highest_hz(c.fitter) || at_bound(effect.parameters[2]) ||
-         effect.parameters[2].plain() > c.fitter.settings().dulled ||
+         effect.parameters[2].plain() > c.settings().dulled ||
          effect.parameters[0].plain() >
              c.fitter.plant().structure.frame_mass(place.story, place.frame);
 }
@@ -74,8 +74,7 @@ void set_fit(const TrialContext& c, const FitResult& run, Trial& t) {
   std::size_t next = c.now.model.effects.size();
   const auto name = [&](EffectKind guess) {
     return !is_axis_error(guess) && next < run.model.effects.size()
-               ? name_of_fit(c.fitter.settings(), run.model.effects[next++],
-                             c.fitter.segments().front())
+               ? name_of_fit(c.settings(), run.model.effects[next++], c.fitter.segments().front())
                : guess;
   };
   t.kind = name(t.kind);
@@ -93,11 +92,10 @@ bool may_be_named(const TrialContext& c, const Trial& t) {
     if (effect.form == LawForm::slack && !yields(effect)) return false;
     if (hardens_to_a_limit(effect)) return false;
     const bool slips = effect.form == LawForm::pinched || effect.form == LawForm::slip_lock;
-    if (slips &&
-        (dissipation(effect) < c.fitter.settings().dissipates ||
-         effect.parameters[HysteresisIndex::width].plain() < c.fitter.settings().narrowest_slip ||
-         at_bound(effect.parameters[HysteresisIndex::slip]) ||
-         at_bound(effect.parameters[HysteresisIndex::width])))
+    if (slips && (dissipation(effect) < c.settings().dissipates ||
+                  effect.parameters[HysteresisIndex::width].plain() < c.settings().narrowest_slip ||
+                  at_bound(effect.parameters[HysteresisIndex::slip]) ||
+                  at_bound(effect.parameters[HysteresisIndex::width])))
       return false;
   }
   return !is_excluded(c, t.kind) && !(t.second && is_excluded(c, t.second->first));
@@ -108,7 +106,7 @@ void name_by_shape(const TrialContext& c, std::vector<FoundEffect>& effects) {
     if (found.index < 0) continue;
     const ModelEffect& law = c.now.model.effects[static_cast<std::size_t>(found.index)];
     if (!law.element_law()) continue;
-    const EffectKind name = name_of_fit(c.fitter.settings(), law, c.fitter.segments().front());
+    const EffectKind name = name_of_fit(c.settings(), law, c.fitter.segments().front());
     if (!is_excluded(c, name)) found.chosen.kind = name;
     std::erase(found.like, found.chosen.kind);
   }

@@ -59,17 +59,17 @@ std::vector<Fitted> worth_a_free_run(const TrialContext& c, std::vector<Fitted> 
   std::vector<Fitted> out;
   double least = c.now.cost;
   for (const Fitted& f : first) least = std::min(least, f.fit.cost);
-  const bool found = least < c.fitter.settings().leaves_little * c.now.cost;
-  const auto laws_run = static_cast<std::size_t>(c.fitter.settings().finalists);
+  const bool found = least < c.settings().leaves_little * c.now.cost;
+  const std::size_t most = c.settings().finalists;
   std::size_t place = 0, of_place = 0, named_of_place = 0;
   for (Fitted& f : first) {
     if (f.candidate->from != place) of_place = named_of_place = 0;
     place = f.candidate->from;
     Trial driven = trial_of(c, *f.candidate, f.fit, TrialOutcome::screened_out);
     const bool named = may_be_named(c, driven);
-    const bool nothing = found && f.fit.cost > c.fitter.settings().useless * c.now.cost;
+    const bool nothing = found && f.fit.cost > c.settings().useless * c.now.cost;
     if (nothing ||
-        (!f.candidate->second && of_place >= laws_run && (!named || named_of_place >= laws_run))) {
+        (!f.candidate->second && of_place >= most && (!named || named_of_place >= most))) {
       screened_out.push_back(std::move(driven));
       continue;
     }
@@ -95,8 +95,8 @@ void refit_friction(const TrialContext& c, const std::vector<Candidate>& candida
     if (candidate.second || !ends_with_friction(candidate.model)) return;
     anew[at].candidate = &candidate;
     for (const FitResult& from : friction_starts(c.fitter, candidate.model)) {
-      FitOptions options = full_fit(c.fitter.settings(), from.model);
-      options.max_steps = c.fitter.settings().longest_steps;
+      FitOptions options = full_fit(c.settings(), from.model);
+      options.max_steps = c.settings().longest_steps;
       FitResult run = c.fitter.fit(from.model, from.motion, options);
       if (is_better(run, anew[at].fit)) anew[at].fit = std::move(run);
     }
@@ -145,20 +145,19 @@ void refit_from_present(const TrialContext& c, const std::vector<Fitted>& kept,
                         std::vector<FitResult>& runs) {
   if (!has_element_law(c.now.model)) return;
   const double least = least_cost(c, runs);
-  if (least < c.fitter.settings().near_noise * c.fitter.expected(c.now.model)) return;
+  if (least < c.settings().near_noise * c.fitter.expected(c.now.model)) return;
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    FitOptions options = full_fit(c.fitter.settings(), kept[at].fit.model);
+    FitOptions options = full_fit(c.settings(), kept[at].fit.model);
     options.max_steps = 0;
     FitResult from;
-    for (const double size : {1.0, c.fitter.settings().small_start}) {
+    for (const double size : {1.0, c.settings().small_start}) {
       FitResult one = c.fitter.fit(with_effects_of(c.now.model, kept[at].fit.model, size),
                                    c.now.motion, options);
       if (is_better(one, from)) from = std::move(one);
     }
-    if (!from.good || from.cost > c.fitter.settings().hopeless * least) return;
-    FitResult run =
-        c.fitter.fit(from.model, from.motion, full_fit(c.fitter.settings(), from.model));
+    if (!from.good || from.cost > c.settings().hopeless * least) return;
+    FitResult run = c.fitter.fit(from.model, from.motion, full_fit(c.settings(), from.model));
     if (is_better(run, runs[at])) runs[at] = std::move(run);
   });
 }
@@ -199,24 +198,23 @@ void fit_runs(const TrialContext& c, const std::vector<Candidate>& candidates,
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     const FitResult from = free_run_start(c.fitter, kept[at].fit);
-    FitOptions options = full_fit(c.fitter.settings(), from.model);
-    options.max_steps = c.fitter.settings().first_steps;
+    FitOptions options = full_fit(c.settings(), from.model);
+    options.max_steps = c.settings().first_steps;
     options.holds_tolerated = c.fitter.plant().is_large();
     runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
   if (const std::string best = best_of(c, kept, runs); !best.empty())
     c.progress(std::to_string(kept.size()) + " laws, so far the best: " + best);
-  if (!c.fitter.plant().is_large() &&
-      least_cost(c, runs) > c.fitter.settings().leaves_little * c.now.cost)
+  if (!c.fitter.plant().is_large() && least_cost(c, runs) > c.settings().leaves_little * c.now.cost)
     refit_friction(c, candidates, kept, runs);
   const double least = least_cost(c, runs);
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    if (!runs[at].good || runs[at].cost > c.fitter.settings().hopeless * least ||
-        runs[at].steps != c.fitter.settings().first_steps)
+    if (!runs[at].good || runs[at].cost > c.settings().hopeless * least ||
+        runs[at].steps != c.settings().first_steps)
       return;
-    const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion,
-                                      full_fit(c.fitter.settings(), runs[at].model));
+    const FitResult on =
+        c.fitter.fit(runs[at].model, runs[at].motion, full_fit(c.settings(), runs[at].model));
     if (on.good && on.cost < runs[at].cost) runs[at] = on;
   });
   refit_from_present(c, kept, runs);
@@ -229,7 +227,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   run_all(c.parallel, static_cast<int>(candidates.size()), [&](int i) {
     const Candidate& candidate = candidates[static_cast<std::size_t>(i)];
     FitOptions options;
-    options.max_steps = c.fitter.settings().steps;
+    options.max_steps = c.settings().steps;
     options.holds_tolerated = c.fitter.plant().is_large();
     first[static_cast<std::size_t>(i)] = {c.fitter.fit(candidate.model, candidate.motion, options),
                                           &candidate};
@@ -292,7 +290,6 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
   for (std::size_t i = 0; i < places.size(); ++i) {
     const bool axis = places[i].candidate_places.front().kind == CandidatePlace::Kind::axis;
     std::size_t count = 0;
-    const auto most_laws = static_cast<std::size_t>(c.fitter.settings().laws);
     bool friction = false;
     for (const Proposal& p : proposals[i]) {
       if (wanted && !wanted(p.kind)) continue;
@@ -303,7 +300,7 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
       // A poor fit of sticking friction under measured motion is not a reason to skip it.
       const bool first_friction = !friction && ends_with_friction(p.model);
       friction |= first_friction;
-      if (!axis && count++ >= most_laws && !first_friction) continue;
+      if (!axis && count++ >= c.settings().laws && !first_friction) continue;
       candidates.push_back({p.model, places[i].motion, p.kind, p.place, {}, i});
     }
   }
@@ -331,7 +328,7 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
     one.model.effects.push_back(swap);
     candidates.push_back(one);
   }
-  const auto laws_of_pair = static_cast<std::size_t>(c.fitter.settings().laws_of_pair);
+  const std::size_t most = c.settings().laws_of_pair;
   std::vector<Proposal> first = propose(c.fitter, pair, 0), second = propose(c.fitter, pair, 1);
   for (std::vector<Proposal>* list : {&first, &second}) {
     std::erase_if(*list, [&](const Proposal& p) {
@@ -340,7 +337,7 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
               p.model.effects.back().form == LawForm::broadband) ||
              is_excluded(c, p.kind);
     });
-    if (list->size() > laws_of_pair) list->resize(laws_of_pair);
+    if (list->size() > most) list->resize(most);
   }
   add_joined(pair, first, second, candidates);
   // One of the two may suffice alone even if its place was not found alone.

@@ -112,22 +112,20 @@ void continue_fits(const TrialContext& c, int steps, std::vector<Trial>& trials)
 
 std::vector<Trial> wrong_labels(const TrialContext& c) {
   const Plant& plant = c.fitter.plant();
-  const SearchSettings& settings = c.fitter.settings();
-  const auto labels = static_cast<std::size_t>(settings.labels),
-             laws = static_cast<std::size_t>(settings.laws);
+  const SearchSettings& settings = c.settings();
   const double expected = c.fitter.expected(c.now.model);
   if (plant.is_large() || plant.equations() == 1 || plant.prescribed ||
       c.now.total_misfit() < settings.far_off * expected)
     return {};
   std::vector<Trial> trials = all_labels(c);
   // Motions that no axis reads would change too.
-  if (trials.size() > labels && plant.unread.cols() == 0) {
+  if (trials.size() > settings.labels && plant.unread.cols() == 0) {
     estimate_costs(c.fitter.systems(from_the_design(c), {}, Forcing::measured), trials);
     sort_by_cost(trials);
-    trials.resize(labels);
+    trials.resize(settings.labels);
   }
   continue_fits(c, 0, trials);
-  if (trials.size() > laws) trials.resize(laws);
+  if (trials.size() > settings.laws) trials.resize(settings.laws);
   continue_fits(c, settings.long_steps, trials);
   std::erase_if(trials, [](const Trial& t) { return !(t.cost < 1e300); });
   if (trials.empty() || trials.front().cost > settings.leaves_little * c.now.cost) return {};

@@ -38,7 +38,7 @@ std::vector<Trial> leads_of(const SearchSettings& settings, const std::vector<Tr
         t.kind == EffectKind::unmeasured_force)
       continue;
     out.push_back(t);
-    if (out.size() == static_cast<std::size_t>(settings.finalists)) break;
+    if (out.size() == settings.finalists) break;
   }
   return out;
 }

@@ -47,7 +47,7 @@ bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry
     const KindOfLaw* known = known_there(law, where);
     return known &&
            (is_of_kind(law.kind, known->kind) ||
-            is_better_than_its_kind(context.fitter.settings(), law, *known)) &&
+            is_better_than_its_kind(context.settings(), law, *known)) &&
            is_nearest_law(context, law);
   });
   if (nearest == rejected.end()) return false;

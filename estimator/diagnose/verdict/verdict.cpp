@@ -160,7 +160,7 @@ void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosi
   std::vector<const Trial*> tried;
   for (const Trial& t : out.rejected)
     if (t.outcome == TrialOutcome::fitted && !is_arbitrary(t.model) &&
-        tried.size() < static_cast<std::size_t>(fitter.settings().finalists))
+        tried.size() < fitter.settings().finalists)
       tried.push_back(&t);
   std::vector<std::vector<Gap>> gaps(tried.size());
   run_all(options.parallel, static_cast<int>(tried.size()), [&](int i) {
