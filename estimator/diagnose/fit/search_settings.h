@@ -63,8 +63,7 @@ struct SearchSettings {
   double nearly_best = 1.1;    ///< does nearly as well as the best
   double undetermined = 1.5;   ///< training records alone over all records
   double at_floor = 1.15;      ///< over the gap's floor: nothing is left
-  double twice_floor = 2;      ///< over its floor: the linear model is adequate
-  double near_floor = 2.5;     ///< over its floor: the effects explain it
+  double near_floor = 2.5;     ///< over its floor: the effects, or the linear model, explain it
 
   // Trials that are given up.
   double hopeless = 4;         ///< times the least cost, or the excess beyond chance
@@ -101,6 +100,7 @@ struct SearchSettings {
   // How many are tried.
   std::size_t places = 5;             ///< places that are iterated, or whose laws are fitted
   std::size_t of_one_sort = 3;        ///< places of one sort among them
+  std::size_t of_the_building = 2;    ///< places of the whole building or a floor among them
   std::size_t as_likely_places = 16;  ///< further places that are as likely
   std::size_t pair_leaders = 6;       ///< places that are paired with every other
   std::size_t laws = 6;               ///< laws of a place, labels, sets of causes that are fitted

@@ -188,7 +188,7 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
     // In a large building, both directions of a mass rank above either direction alone.
     const bool alone =
         fitter.plant().is_large() && place.size() == 1 && single < settings.of_one_sort;
-    const bool more = (is_global(place) && global < settings.of_one_sort) || alone;
+    const bool more = (is_global(place) && global < settings.of_the_building) || alone;
     if (i >= settings.places && !more) continue;
     if (nothing && i > 0) break;
     global += is_global(place);

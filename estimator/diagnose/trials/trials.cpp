@@ -227,7 +227,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   run_all(c.parallel, static_cast<int>(candidates.size()), [&](int i) {
     const Candidate& candidate = candidates[static_cast<std::size_t>(i)];
     FitOptions options;
-    options.max_steps = c.settings().steps;
+    options.max_steps = c.settings().rough_steps;
     options.holds_tolerated = c.fitter.plant().is_large();
     first[static_cast<std::size_t>(i)] = {c.fitter.fit(candidate.model, candidate.motion, options),
                                           &candidate};

@@ -258,7 +258,7 @@ void judge(const Fitter& fitter, Diagnosis& out) {
                     worst_gap(out.after) < fitter.settings().at_floor;
   if (out.effects.empty()) {
     const bool adequate =
-        fits && (worst_gap(out.before) < fitter.settings().twice_floor || out.rejected.empty());
+        fits && (worst_gap(out.before) < fitter.settings().near_floor || out.rejected.empty());
     out.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
     if (!adequate && out.reason.empty() && fits_separately(fitter, out.linear, out.ratio_before))
       out.reason =

@@ -14,7 +14,7 @@ using test::Recorded;
 
 constexpr double kNear = 0.01;
 // Gaps over their floors.
-constexpr double kAtFloor = 1.15, kNearFloor = 2.5, kAdequateGap = 2;
+constexpr double kAtFloor = 1.15, kNearFloor = 2.5;
 constexpr double kTakesAll = 0.97;  // of the misfit beyond noise
 
 Gap gap_with(double overall, double floor = 1) {
@@ -44,8 +44,8 @@ TEST(Judge, JudgesALinearBuildingWithoutEffects) {
       {"more than noise", SearchSettings().adequate + kNear, 3, false, Verdict::unexplained},
       {"more, but its gap is at its floor", 3, kAtFloor - kNear, false, Verdict::adequate},
       {"more, and its gap above it", 3, kAtFloor + kNear, false, Verdict::unexplained},
-      {"a law was tried, the gap is small", 1, kAdequateGap - kNear, true, Verdict::adequate},
-      {"a law was tried, the gap is large", 1, kAdequateGap + kNear, true, Verdict::unexplained},
+      {"a law was tried, the gap is small", 1, kNearFloor - kNear, true, Verdict::adequate},
+      {"a law was tried, the gap is large", 1, kNearFloor + kNear, true, Verdict::unexplained},
   };
   for (const Linear& l : all) {
     Diagnosis d;
