@@ -52,7 +52,7 @@ constexpr SearchSetting kSettings[] = {
     {"behind", &SearchSettings::behind, 0, 20},
     {"leaves_little", &SearchSettings::leaves_little, 0, 1},
     {"useless", &SearchSettings::useless, 0, 1},
-    {"half", &SearchSettings::half, 0, 1},
+    {"promised_by_step", &SearchSettings::promised_by_step, 0, 1},
     {"kind_follows", &SearchSettings::kind_follows, 0, 1},
     {"simpler_kind", &SearchSettings::simpler_kind, 0, 1},
     {"beyond_linear", &SearchSettings::beyond_linear, 1, 10},

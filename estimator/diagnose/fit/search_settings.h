@@ -66,11 +66,11 @@ struct SearchSettings {
   double near_floor = 2.5;     ///< over its floor: the effects, or the linear model, explain it
 
   // Trials that are given up.
-  double hopeless = 4;         ///< times the least cost, or the excess beyond chance
-  double behind = 2;           ///< significant falls of the cost: no rival
-  double leaves_little = 0.3;  ///< of the cost: something was found
-  double useless = 0.9;        ///< of the cost: explains nothing
-  double half = 0.5;           ///< of the needed fall or of chance, promised by one step
+  double hopeless = 4;            ///< times the least cost, or the excess beyond chance
+  double behind = 2;              ///< significant falls of the cost: no rival
+  double leaves_little = 0.3;     ///< of the cost: something was found
+  double useless = 0.9;           ///< of the cost: explains nothing
+  double promised_by_step = 0.5;  ///< of the needed fall or of chance, promised by one step
 
   // Kinds of a force at a place.
   double kind_follows = 0.5;     ///< share below which no kind explains the force

@@ -111,7 +111,7 @@ std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
     const bool axis = one.candidate_places.front().kind == CandidatePlace::Kind::axis;
     if (one.converged || (one.ratio > limit && !axis)) return;
     const Localisation on = localise(fitter, one.model, one.motion, one.candidate_places,
-                                     steps - fitter.settings().first_steps);
+                                     std::max(0, steps - fitter.settings().first_steps));
     if (on.misfit < one.misfit) one = on;
   });
   sort_by_ratio(out);
@@ -158,9 +158,10 @@ bool leaves_nothing(const Fitter& fitter, const FitResult& now,
                     const std::vector<Localisation>& once) {
   if (once.empty()) return true;
   const double ratio = now.total_misfit() / fitter.expected(now.model);
-  const double excess = ratio - std::clamp(once.front().ratio, fitter.settings().half, 1.0);
+  const double excess =
+      ratio - std::clamp(once.front().ratio, fitter.settings().promised_by_step, 1.0);
   return ratio < fitter.settings().near_noise &&
-         excess < fitter.settings().half * chance_of(fitter, now.model);
+         excess < fitter.settings().promised_by_step * chance_of(fitter, now.model);
 }
 
 bool is_global(const CandidatePlace& s) {

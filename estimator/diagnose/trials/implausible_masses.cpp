@@ -42,7 +42,8 @@ std::vector<Proposal> promising(const TrialContext& context, const Located& loca
   const std::vector<LinearGain> gains = linear_gains(context, effects);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (gains[i].value > 0 && gains[i].cost > context.settings().half * needed) order.push_back(i);
+    if (gains[i].value > 0 && gains[i].cost > context.settings().promised_by_step * needed)
+      order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return gains[a].cost > gains[b].cost; });
   if (order.size() > context.settings().linear_effects)

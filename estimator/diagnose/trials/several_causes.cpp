@@ -46,7 +46,8 @@ bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& o
 std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
   const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
   const SearchSettings& settings = c.settings();
-  const std::size_t most = std::clamp(kMaxWork / equations, settings.finalists, settings.causes);
+  const std::size_t most =
+      std::max(settings.finalists, std::min(kMaxWork / equations, settings.causes));
   std::vector<const Trial*> out;
   for (const Trial& t : tried) {
     const bool otherwise = std::any_of(out.begin(), out.end(),
