@@ -18,9 +18,9 @@ struct ChangedSetting {
 /// its range. Leaves out values that the range makes equal to the usual one.
 std::vector<ChangedSetting> changed_settings(const std::string& only);
 
-/// Returns a Markdown table of the numbers in `changed`. For each value it lists the cases in these
-/// directories whose names, places or confident errors differ from those in the folder `out`.
-std::string sensitivity_table(const std::vector<std::string>& directories,
-                              const std::vector<ChangedSetting>& changed);
+/// Returns a Markdown table of every number, or of the one called `only`. For each value it lists
+/// the cases in these directories whose names, places or confident errors differ from those in the
+/// folder `out`.
+std::string sensitivity_table(const std::vector<std::string>& directories, const std::string& only);
 
 }  // namespace framewatch::study

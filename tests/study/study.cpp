@@ -243,7 +243,7 @@ int sensitivity(const Arguments& a) {
   for (const ChangedSetting& one : changed)
     for (const std::string& directory : all)
       diagnose_case(program, directory, one.text(), "--setting " + one.text());
-  fmt::print("{}", sensitivity_table(all, changed));
+  fmt::print("{}", sensitivity_table(all, only));
   return 0;
 }
 

@@ -2,11 +2,8 @@
 #include "daemon/tools/diagnosis/diagnose_run.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <limits>
 #include <optional>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -14,6 +11,7 @@
 
 #include "daemon/base/workers.h"
 #include "daemon/config/keys/suggest.h"
+#include "drivers/files/number_text.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 #include "estimator/structure/effect.h"
 
@@ -34,14 +32,6 @@ std::vector<estimator::EffectKind> excluded_kinds(const std::vector<std::string>
   return out;
 }
 
-/// Returns the number in `text`, or NaN if it holds anything else.
-double number_of(const std::string& text) {
-  double out = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, out);
-  return error == std::errc() && rest == end ? out : std::numeric_limits<double>::quiet_NaN();
-}
-
 estimator::SearchSettings settings_of(const std::vector<std::string>& given,
                                       std::vector<std::string>& problems) {
   estimator::SearchSettings out;
@@ -57,12 +47,12 @@ estimator::SearchSettings settings_of(const std::vector<std::string>& given,
     }
     const estimator::SearchSetting& setting =
         estimator::search_settings()[static_cast<std::size_t>(at - names.begin())];
-    const double value = number_of(text.substr(std::min(text.size(), name.size() + 1)));
-    if (!(value >= setting.low && value <= setting.high))
+    const auto value = drivers::parse_number(text.substr(std::min(text.size(), name.size() + 1)));
+    if (!value || !(*value >= setting.low && *value <= setting.high))
       problems.push_back(fmt::format("--setting {}: must be NAME=VALUE with a value from {} to {}",
                                      text, setting.low, setting.high));
     else
-      setting.set(out, value);
+      setting.set(out, *value);
   }
   return out;
 }

@@ -55,19 +55,15 @@ std::vector<Step> steps_of(const DiagnoseOutput& o) {
   return out;
 }
 
-double least(const std::vector<double>& values) {
-  return *std::min_element(values.begin(), values.end());
-}
-
 /// Returns "linear 30; places 1.02 to 29; ...".
 std::string told(const std::vector<Step>& steps) {
   std::string out;
   for (const Step& s : steps) {
     std::vector<double> all = s.tried;
     all.insert(all.end(), s.kept.begin(), s.kept.end());
-    const double low = least(all), high = *std::max_element(all.begin(), all.end());
-    out += fmt::format("{}{} {:.3g}", out.empty() ? "" : "; ", s.name, low);
-    if (high > low) out += fmt::format(" to {:.3g}", high);
+    const auto [low, high] = std::minmax_element(all.begin(), all.end());
+    out += fmt::format("{}{} {:.3g}", out.empty() ? "" : "; ", s.name, *low);
+    if (*high > *low) out += fmt::format(" to {:.3g}", *high);
   }
   return out + ".";
 }

@@ -125,22 +125,24 @@ bool is_redundant(const Fitter& fitter, const Model& with, const Model& without,
   return gap_ratio(fitter, with, without, parallel) > 1 - fitter.settings().same_gap;
 }
 
+void hold_axis(const Plant& plant, int axis, Model& model) {
+  const Model none = initial_model(plant);
+  std::erase(model.free_gain, axis);
+  std::erase(model.free_clock, axis);
+  model.gain[axis] = none.gain[axis];
+  model.clock_s[axis] = none.clock_s[axis];
+}
+
 Model without_effects(const Model& model, const std::vector<FoundEffect>& effects,
                       std::size_t first, std::size_t end, const Plant& plant) {
   Model out = model;
-  const Model none = initial_model(plant);
   std::vector<int> leaving;
   for (std::size_t i = first; i < end; ++i) {
     const FoundEffect& e = effects[i];
-    const int axis = e.chosen.place.channel;
-    if (e.index >= 0) {
+    if (e.index >= 0)
       leaving.push_back(e.index);
-    } else if (e.ramp_mps3.empty()) {
-      std::erase(out.free_gain, axis);
-      std::erase(out.free_clock, axis);
-      out.gain[axis] = none.gain[axis];
-      out.clock_s[axis] = none.clock_s[axis];
-    }
+    else if (e.ramp_mps3.empty())
+      hold_axis(plant, e.chosen.place.channel, out);
   }
   std::sort(leaving.rbegin(), leaving.rend());
   for (const int index : leaving) out.effects.erase(out.effects.begin() + index);
@@ -166,12 +168,10 @@ void remove_not_needed(const Fitter& fitter, const Parallel& parallel,
       if (rough.good && rough.cost < fitter.settings().hopeless * now.cost)
         less[at] = fit_to_the_end(fitter, rough.model, rough.motion);
     });
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < less.size(); ++i)
-      if (less[i].good && (!less[best].good || less[i].cost < less[best].cost)) best = i;
-    if (!less[best].good || less[best].cost > now.cost + fitter.settings().min_gain) return;
-    now = std::move(less[best]);
-    erase_effect(best, effects);
+    const auto best = std::min_element(less.begin(), less.end(), is_better);
+    if (!best->good || best->cost > now.cost + fitter.settings().min_gain) return;
+    now = std::move(*best);
+    erase_effect(static_cast<std::size_t>(best - less.begin()), effects);
   }
 }
 

@@ -45,6 +45,10 @@ double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
 bool is_redundant(const Fitter& fitter, const Model& with, const Model& without,
                   const Parallel& parallel);
 
+/// Takes an effect on an axis' gain or clock out of a model: both are again as declared, within
+/// their tolerances.
+void hold_axis(const Plant& plant, int axis, Model& model);
+
 /// Returns the model without the effects `first` to `end` - 1 of the list.
 Model without_effects(const Model& model, const std::vector<FoundEffect>& effects,
                       std::size_t first, std::size_t end, const Plant& plant);

@@ -269,12 +269,7 @@ class Selection {
     out.members.erase(out.members.begin() + static_cast<std::ptrdiff_t>(member));
     const Trial& t = *tried_[s.members[member]];
     if (is_axis_error(t.kind)) {
-      const Model none = initial_model(context_.fitter.plant());
-      const int axis = t.place.channel;
-      std::erase(out.model.free_gain, axis);
-      std::erase(out.model.free_clock, axis);
-      out.model.gain[axis] = none.gain[axis];
-      out.model.clock_s[axis] = none.clock_s[axis];
+      hold_axis(context_.fitter.plant(), t.place.channel, out.model);
     } else {
       out.model.effects.erase(out.model.effects.begin() +
                               static_cast<std::ptrdiff_t>(effect_of(s, member)));

@@ -236,6 +236,15 @@ TEST_F(GapLoop, DiagnoseOfAnEventNamesTheMissingEffect) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(diagnose_command(d), 2);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("or --event alone"), std::string::npos);
+  d.settings = {"explan=0.9", "explains=2", "steps=many", "steps"};
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(diagnose_command(d), 2);
+  const std::string said = testing::internal::GetCapturedStderr();
+  for (const char* problem :
+       {"explan=0.9: the search has no number of this name, did you mean explains",
+        "explains=2: must be NAME=VALUE with a value from 0 to 1", "steps=many: must be NAME=VALUE",
+        "steps: must be NAME=VALUE"})
+    EXPECT_NE(said.find(problem), std::string::npos) << said;
   EXPECT_FALSE(std::filesystem::exists(path("diagnosis")));
 }
 
