@@ -17,7 +17,6 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLongestStep = 0.5;          ///< of a stiffness, relative to the design
 constexpr int kTries = 7, kTriesOfLarge = 4;  ///< of a step, with increasing damping
 
 double total_misfit(const std::vector<Whitened>& systems) {
@@ -223,14 +222,10 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
 
 Model Fitter::moved(const Model& model, const std::vector<Unknown>& unknowns,
                     const VectorXd& step) const {
-  const auto is_stiffness = [&](const Unknown& u) {
-    return u.kind == Unknown::Kind::theta && u.index < plant_.element_count();
-  };
   double share = 1;
   for (std::size_t u = 0; u < unknowns.size(); ++u)
-    if (is_stiffness(unknowns[u]))
-      share =
-          std::min(share, kLongestStep / std::max(std::abs(step[static_cast<Index>(u)]), 1e-300));
+    share = std::min(
+        share, unknowns[u].longest_step / std::max(std::abs(step[static_cast<Index>(u)]), 1e-300));
   Model out = model;
   for (std::size_t u = 0; u < unknowns.size(); ++u) {
     const double from = value_of(model, unknowns[u]);

@@ -89,6 +89,7 @@ MatrixXcd calibrated(const Model& model, const RecordSegment& segment) {
 VectorXd bin_noise(const Model& model, const RecordSegment& segment, Index bin) {
   VectorXd out = static_cast<double>(segment.intervals()) * segment.variance;
   out *= 1 + 2 * M_PI * segment.corner_hz / segment.w[bin];
+  if (segment.model_error.size() > 0) out *= segment.model_error[bin];
   out.array() /= (1 + model.gain.array()).square();
   for (Index a = 0; a < out.size(); ++a)
     if (segment.is_displaced(a)) out[a] *= std::pow(segment.w[bin], 4);

@@ -77,7 +77,7 @@ MatrixXd sampled_square_of(const Linearised& at, std::size_t record,
 }  // namespace
 
 std::vector<SampledBin> sampled_bins(const Linearised& at, std::size_t record) {
-  constexpr Index kOneOf = 8, kFewest = 64;
+  constexpr Index kOneOf = 4, kFewest = 128;
   constexpr double kEvenly = 0.5;  // share of the chances that does not depend on the motion
   const Whitened& system = at.systems[record];
   const Index bins = system.bins();
@@ -157,9 +157,11 @@ VectorXd bounded_step(const MatrixXd& normal, const VectorXd& right, const Model
       const Unknown& u = unknowns[i];
       const auto at = static_cast<Index>(i);
       const double from = value_of(model, u), to = from + step[at];
-      if (held[i] || (to >= u.low && to <= u.high)) continue;
+      const double low = std::max(u.low, from - u.longest_step);
+      const double high = std::min(u.high, from + u.longest_step);
+      if (held[i] || (to >= low && to <= high)) continue;
       held[i] = true;
-      to_bound[at] = std::clamp(to, u.low, u.high) - from;
+      to_bound[at] = std::clamp(to, low, high) - from;
       more = true;
     }
     if (!more) break;

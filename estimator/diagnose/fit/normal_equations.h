@@ -16,11 +16,11 @@ struct SampledBin {
   double weight = 1;
 };
 
-/// Returns the bins whose products make up the curvature of a fit to a large building: about an
-/// eighth of all. Bins with much motion are always included; others are sampled with a chance
-/// proportional to their share of it (systematic sampling, weighted by the inverse chance). Bins
-/// with much of an effect's column are included too. The curvature only directs steps; gradients
-/// and misfits use all bins.
+/// Returns the bins whose products make up the curvature of a fit to a large building: about a
+/// quarter of all (with an eighth, the curvature is far too small along some directions). Bins with
+/// much motion are always included; others are sampled with a chance proportional to their share of
+/// it (systematic sampling, weighted by the inverse chance). Bins with much of an effect's column
+/// are included too. The curvature only directs steps; gradients and misfits use all bins.
 std::vector<SampledBin> sampled_bins(const Linearised& at, std::size_t record);
 
 /// Returns the Gram matrix of the unknowns `kept`, the residual and the end terms, in this order.

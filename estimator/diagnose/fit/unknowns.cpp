@@ -10,7 +10,8 @@ namespace {
 using Kind = Unknown::Kind;
 
 constexpr double kTightK = 0.6, kTightG = 1.0, kTightC = 3.0;  ///< weak priors, relative
-constexpr double kMaxSigmas = 4;  ///< of masses, gains and clocks from their declared values
+constexpr double kLongestStep = 0.5;  ///< of a stiffness, relative to the design
+constexpr double kMaxSigmas = 4;      ///< of masses, gains and clocks from their declared values
 /// Lower bound, of the design's stiffness or damping. Structures dissipate, and the equation of a
 /// mode that neither dissipates nor is driven from the base would have no noise.
 constexpr double kMin = 0.02;
@@ -31,6 +32,7 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
                      kMin, kAny});
       for (std::size_t i = 1; i < group.elements.size(); ++i)
         out.back().tied.emplace_back(first + group.elements[i], scale(group.elements[i]));
+      if (first == 0) out.back().longest_step = kLongestStep;
     }
   for (int p = 0; p < 2 * elements && plant.groups.empty(); ++p) {
     const bool panel = plant.table[p].panel >= 0;
@@ -38,6 +40,7 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
     const double sigma = (p < elements ? (panel ? kTightG : kTightK) : kTightC);
     const double scale = plant.design[p];
     out.push_back({Kind::theta, p, 0, 0, scale, sigma, 1.0, kMin, kAny});
+    if (p < elements) out.back().longest_step = kLongestStep;
   }
   if (tolerances.mass > 0)
     for (int i = 0; i < static_cast<int>(plant.equations()); ++i)

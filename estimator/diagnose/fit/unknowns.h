@@ -29,6 +29,9 @@ struct Unknown {
   double high = std::numeric_limits<double>::infinity();
   /// Further members of theta with the same value, and their scales.
   std::vector<std::pair<int, double>> tied = {};
+  /// Longest step in one step of a fit, in units of the unknown: beyond it, the linearized
+  /// equations are wrong.
+  double longest_step = std::numeric_limits<double>::infinity();
 };
 
 std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,

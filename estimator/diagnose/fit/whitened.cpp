@@ -131,23 +131,32 @@ HiddenOscillator hidden_oscillator(const Plant& plant, const ModelEffect& e, con
   return out;
 }
 
-/// Returns the likeliest motion, docs/equations.md (34), for which the gradient is exact. If the
-/// model does not fit, it subtracts less of the residual, because the residual is not noise.
-MatrixXcd shown_motion(const Plant& plant, const MatrixXd& noise, const Whitened& system) {
-  MatrixXcd out = system.calibrated;
-  const Index bins = system.bins(), n = plant.equations(), axes = plant.axis_count();
+/// Returns for every bin which share of the residual is noise: less than 1 if the model does not
+/// fit. rest: whitened residual.
+VectorXd share_of_noise(const Plant& plant, const VectorXd& rest, Index bins) {
+  const Index n = plant.equations();
   const double rows = static_cast<double>(plant.read_equations());
   VectorXd level(bins);
-  for (Index b = 0; b < bins; ++b) level[b] = system.rest.segment(2 * n * b, 2 * n).squaredNorm();
-  const bool fits = level.mean() < kNearNoise * rows;
+  for (Index b = 0; b < bins; ++b) level[b] = rest.segment(2 * n * b, 2 * n).squaredNorm();
+  VectorXd out = VectorXd::Ones(bins);
+  if (level.mean() < kNearNoise * rows) return out;
   const Index around = std::max<Index>(kMinNeighbors, bins / 60);
   for (Index b = 0; b < bins; ++b) {
     const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
     const double local = level.segment(from, to - from).mean() / rows;
-    const double share = fits ? 1.0 : std::min(1.0, 1 / std::max(local, 1e-300));
-    out.col(b).head(axes) -=
-        share * noise.col(b).cwiseProduct(system.by_readings.col(b).head(axes));
+    out[b] = std::min(1.0, 1 / std::max(local, 1e-300));
   }
+  return out;
+}
+
+/// Returns the likeliest motion, docs/equations.md (34), for which the gradient is exact.
+/// by_readings: D^H by_forces. share: of the residual that is noise, of every bin.
+MatrixXcd likeliest_motion(const Plant& plant, const MatrixXd& noise, const Whitened& system,
+                           const MatrixXcd& by_readings, const VectorXd& share) {
+  MatrixXcd out = system.calibrated;
+  const Index axes = plant.axis_count();
+  for (Index b = 0; b < system.bins(); ++b)
+    out.col(b).head(axes) -= share[b] * noise.col(b).cwiseProduct(by_readings.col(b).head(axes));
   return out;
 }
 
@@ -200,7 +209,8 @@ void weigh(const Plant& plant, const Model& model, const RecordSegment& segment,
   if (!std::isfinite(out.misfit)) return;
   out.by_forces = out.weights->turned_back(out.rest);
   out.by_readings = out.operation.adjoint_times(out.by_forces);
-  out.motion = shown_motion(plant, noise, out);
+  out.motion = likeliest_motion(plant, noise, out, out.by_readings,
+                                share_of_noise(plant, out.rest, out.bins()));
   follow_unread(plant, out.forces, out.operation, out.motion);
   out.good = true;
 }
@@ -262,6 +272,14 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   follow_unread(plant, out.forces, out.operation, out.calibrated);
   weigh(plant, model, segment, std::move(weights), out);
   return out;
+}
+
+void set_motion(const Plant& plant, const Model& model, const RecordSegment& segment,
+                const VectorXd& rest, Whitened& system) {
+  const MatrixXcd by_readings = system.operation.adjoint_times(system.weights->turned_back(rest));
+  system.motion = likeliest_motion(plant, noise_of(model, segment), system, by_readings,
+                                   share_of_noise(plant, rest, system.bins()));
+  follow_unread(plant, system.forces, system.operation, system.motion);
 }
 
 Whitened with_own_weights(const Plant& plant, const Model& model, const RecordSegment& segment,

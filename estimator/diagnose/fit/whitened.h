@@ -90,6 +90,11 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
 Whitened with_own_weights(const Plant& plant, const Model& model, const RecordSegment& segment,
                           Whitened system);
 
+/// Sets the likeliest motion if only `rest` of the residual is noise: an arbitrary force explains
+/// the other part.
+void set_motion(const Plant& plant, const Model& model, const RecordSegment& segment,
+                const Eigen::VectorXd& rest, Whitened& system);
+
 /// Returns the whitened rows of forces, equations x bins.
 Eigen::VectorXd whiten_rows(const Whitened& system, const Eigen::MatrixXcd& forces);
 /// Returns the whitened rows of direction (equations) times signal (bins).

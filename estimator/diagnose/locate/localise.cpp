@@ -168,6 +168,20 @@ Localisation everything(const Fitter& fitter, const Model& model,
   return out;
 }
 
+/// Returns the residual without what arbitrary signals at the places explain.
+VectorXd rest_without(const Whitened& system, const std::vector<CandidatePlace>& places) {
+  VectorXd out = system.rest;
+  const Index n = system.operation.equations();
+  for (Index b = 0; b < system.bins(); ++b) {
+    const MatrixXcd basis = candidate_basis(system, b, places);
+    Eigen::VectorXcd rows = rows_of_bin(out, b, n);
+    rows -= basis * (basis.adjoint() * rows).eval();
+    out.segment(2 * n * b, n) = rows.real();
+    out.segment(2 * n * b + n, n) = rows.imag();
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& at,
@@ -252,29 +266,24 @@ Localisation localise(const Fitter& fitter, const Model& start,
   Model model = start;
   std::vector<MatrixXcd> driving = motion;
   driving.resize(fitter.segments().size());
-  double before = 1e300, weighted = 0;
-  std::vector<Whitened> weights;  // of a large building, until the misfit has halved
-  bool own_weights = true;        // of the best misfit
+  double before = 1e300;
   for (int step = 0; step <= steps; ++step) {
-    const bool renewed = weights.empty() || step == steps || before < kNewWeights * weighted ||
-                         before < kNearNoise * expected_of(fitter, model, candidate_places);
-    std::vector<Whitened> systems =
-        fitter.systems(model, driving, Forcing::measured, renewed ? nullptr : &weights);
+    std::vector<Whitened> systems = fitter.systems(model, driving, Forcing::measured);
     if (systems.empty()) return out;
-    if (plant.is_large() && renewed) weights = systems;
-    const Linearised at = fitter.linearise(model, std::move(systems));
     if (explains_everything(fitter, candidate_places))
-      return everything(fitter, model, candidate_places, at.systems);
-    const std::vector<Index> kept = moving(at, true);
-    const std::vector<MatrixXd> squares = squares_of(fitter, at, kept);
+      return everything(fitter, model, candidate_places, systems);
     std::vector<CandidatePlace> current = candidate_places;
     update_directions(plant, model, current);
+    // The signals are not noise: with them in the motion, its columns would be biased.
+    for (std::size_t r = 0; r < systems.size(); ++r)
+      set_motion(plant, model, fitter.segments()[r], rest_without(systems[r], current), systems[r]);
+    const Linearised at = fitter.linearise(model, std::move(systems));
+    const std::vector<Index> kept = moving(at, true);
+    const std::vector<MatrixXd> squares = squares_of(fitter, at, kept);
     const Reduced reduced =
         reduce(fitter, at, model, kept, squares, std::span(&current, 1)).front();
     const double left = reduced.equations.misfit, misfit = left + fitter.prior_cost(model);
-    if (renewed) weighted = left;
-    if (misfit < out.misfit || (renewed && !own_weights)) {
-      own_weights = renewed;
+    if (misfit < out.misfit) {
       out.candidate_places = current;
       out.misfit = misfit;
       out.ratio = left / reduced.expected;
@@ -284,8 +293,7 @@ Localisation localise(const Fitter& fitter, const Model& start,
       for (const Whitened& system : at.systems) out.motion.push_back(system.calibrated);
     }
     out.converged = std::abs(before - left) < kConverged * left;
-    const bool rises = plant.is_large() && !renewed && left > before;
-    if (step == steps || out.converged || rises) break;
+    if (step == steps || out.converged) break;
     before = left;
     const VectorXd change =
         step_of(reduced, at, model, std::max(1.0, left / reduced.expected), kept);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/noise_corner.h"
+#include "estimator/diagnose/fit/softened_fit.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -180,7 +181,9 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
   std::vector<std::vector<CandidatePlace>> lists;
   for (const CandidatePlace& s : candidate_places_of(fitter.plant(), now.model))
     lists.push_back({s});
-  out.once = one_step(fitter, now, lists, parallel);
+  // The many elements of a large building make up for an effect that is missing.
+  const FitResult start = fitter.plant().is_large() ? softened_fit(fitter, now) : now;
+  out.once = one_step(fitter, start, lists, parallel);
   std::vector<const Localisation*> starts;
   std::size_t global = 0, single = 0;
   const bool nothing = leaves_nothing(fitter, now, out.once);
@@ -197,7 +200,7 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
     starts.push_back(&out.once[i]);
   }
   out.places = iterated(
-      fitter, now, starts, settings.long_steps,
+      fitter, start, starts, settings.long_steps,
       [&](const Localisation& best) { return wide_margin_of(settings, best); }, parallel);
   return out;
 }

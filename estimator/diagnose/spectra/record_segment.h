@@ -22,6 +22,8 @@ struct RecordSegment {
   /// The noise of all axes grows toward low frequencies: its density is the white density times 1 +
   /// corner_hz over the frequency.
   double corner_hz = 0;
+  /// Power of noise and the model's error over that of noise, for every bin. Empty: 1.
+  Eigen::VectorXd model_error;
   Eigen::VectorXd w;  ///< rad/s of the bins in the band
   Eigen::Index first_bin = 0;
   Eigen::MatrixXcd spectrum;  ///< axes x bins, as sums over samples

@@ -106,6 +106,17 @@ TEST(Fit, StepsStayWithinBoundsAndOtherUnknownsAdapt) {
   EXPECT_NEAR(step[2], others[1], 1e-12);
 }
 
+TEST(Fit, AnUnknownAtItsLongestStepDoesNotShortenTheOthers) {
+  Model model;
+  model.theta = Eigen::Vector2d(1, 1);
+  std::vector<Unknown> unknowns{{Unknown::Kind::theta, 0}, {Unknown::Kind::theta, 1}};
+  unknowns[0].longest_step = 0.5;
+  const Eigen::VectorXd step =
+      bounded_step(Eigen::Matrix2d::Identity(), Eigen::Vector2d(-40, 3), model, unknowns);
+  EXPECT_DOUBLE_EQ(step[0], -0.5);
+  EXPECT_DOUBLE_EQ(step[1], 3);
+}
+
 TEST(Fit, FitsNoElementThatAddsEnergy) {
   Small small;
   small.truth.tail(small.table.elements())[0] *= -0.5;

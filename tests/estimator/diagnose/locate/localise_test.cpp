@@ -88,6 +88,17 @@ TEST_P(LocaliseHidden, LeavesNoiseOnlyAtTheTruePlace) {
 INSTANTIATE_TEST_SUITE_P(AtEveryKindOfPlace, LocaliseHidden,
                          testing::Range(std::size_t{0}, hidden_effects().size()));
 
+TEST(Localise, ReachesTheNoiseInAFewStepsFromAFarModel) {
+  constexpr double kChance = 4.5;
+  constexpr int kFewSteps = 4;
+  const Case c(Small().record({test::cubic_spring(2, 2e11).simulated}, 3));
+  Model far = initial_model(c.plant);
+  far.theta *= 1.6;
+  const Localisation own =
+      localise(c.fitter, far, {}, {c.at(Kind::element, test::frame_place(2))}, kFewSteps);
+  EXPECT_LT(std::abs(c.beyond_noise(own)), kChance);
+}
+
 TEST(Localise, FindsAWrongReadingAtItsAxis) {
   constexpr int kAxis = 1;
   MatrixXd record = Small().record({}, 3);
