@@ -157,8 +157,8 @@ VectorXd bounded_step(const MatrixXd& normal, const VectorXd& right, const Model
       const Unknown& u = unknowns[i];
       const auto at = static_cast<Index>(i);
       const double from = value_of(model, u), to = from + step[at];
-      const double low = std::max(u.low, from - u.longest_step);
-      const double high = std::min(u.high, from + u.longest_step);
+      const double low = u.stops_alone ? std::max(u.low, from - u.longest_step) : u.low;
+      const double high = u.stops_alone ? std::min(u.high, from + u.longest_step) : u.high;
       if (held[i] || (to >= low && to <= high)) continue;
       held[i] = true;
       to_bound[at] = std::clamp(to, low, high) - from;

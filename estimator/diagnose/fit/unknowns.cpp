@@ -33,6 +33,7 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
       for (std::size_t i = 1; i < group.elements.size(); ++i)
         out.back().tied.emplace_back(first + group.elements[i], scale(group.elements[i]));
       if (first == 0) out.back().longest_step = kLongestStep;
+      out.back().stops_alone = plant.is_large();
     }
   for (int p = 0; p < 2 * elements && plant.groups.empty(); ++p) {
     const bool panel = plant.table[p].panel >= 0;
@@ -41,6 +42,7 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
     const double scale = plant.design[p];
     out.push_back({Kind::theta, p, 0, 0, scale, sigma, 1.0, kMin, kAny});
     if (p < elements) out.back().longest_step = kLongestStep;
+    out.back().stops_alone = plant.is_large();
   }
   if (tolerances.mass > 0)
     for (int i = 0; i < static_cast<int>(plant.equations()); ++i)

@@ -32,6 +32,9 @@ struct Unknown {
   /// Longest step in one step of a fit, in units of the unknown: beyond it, the linearized
   /// equations are wrong.
   double longest_step = std::numeric_limits<double>::infinity();
+  /// At its longest step it stops alone; otherwise the whole step is shortened. In a large building
+  /// one element would hold up hundreds of others.
+  bool stops_alone = false;
 };
 
 std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,

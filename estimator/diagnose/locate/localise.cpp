@@ -274,8 +274,9 @@ Localisation localise(const Fitter& fitter, const Model& start,
       return everything(fitter, model, candidate_places, systems);
     std::vector<CandidatePlace> current = candidate_places;
     update_directions(plant, model, current);
-    // The signals are not noise: with them in the motion, its columns would be biased.
-    for (std::size_t r = 0; r < systems.size(); ++r)
+    // The signals are not noise: with them in the motion, the columns of a large building's many
+    // elements would be biased.
+    for (std::size_t r = 0; r < systems.size() && plant.is_large(); ++r)
       set_motion(plant, model, fitter.segments()[r], rest_without(systems[r], current), systems[r]);
     const Linearised at = fitter.linearise(model, std::move(systems));
     const std::vector<Index> kept = moving(at, true);

@@ -111,6 +111,7 @@ TEST(Fit, AnUnknownAtItsLongestStepDoesNotShortenTheOthers) {
   model.theta = Eigen::Vector2d(1, 1);
   std::vector<Unknown> unknowns{{Unknown::Kind::theta, 0}, {Unknown::Kind::theta, 1}};
   unknowns[0].longest_step = 0.5;
+  unknowns[0].stops_alone = true;
   const Eigen::VectorXd step =
       bounded_step(Eigen::Matrix2d::Identity(), Eigen::Vector2d(-40, 3), model, unknowns);
   EXPECT_DOUBLE_EQ(step[0], -0.5);
