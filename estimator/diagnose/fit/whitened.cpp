@@ -134,19 +134,11 @@ HiddenOscillator hidden_oscillator(const Plant& plant, const ModelEffect& e, con
 /// Returns for every bin which share of the residual is noise: less than 1 if the model does not
 /// fit. rest: whitened residual.
 VectorXd share_of_noise(const Plant& plant, const VectorXd& rest, Index bins) {
-  const Index n = plant.equations();
-  const double rows = static_cast<double>(plant.read_equations());
-  VectorXd level(bins);
-  for (Index b = 0; b < bins; ++b) level[b] = rest.segment(2 * n * b, 2 * n).squaredNorm();
-  VectorXd out = VectorXd::Ones(bins);
-  if (level.mean() < kNearNoise * rows) return out;
+  if (rest.squaredNorm() <
+      kNearNoise * static_cast<double>(plant.read_equations()) * static_cast<double>(bins))
+    return VectorXd::Ones(bins);
   const Index around = std::max<Index>(kMinNeighbors, bins / 60);
-  for (Index b = 0; b < bins; ++b) {
-    const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
-    const double local = level.segment(from, to - from).mean() / rows;
-    out[b] = std::min(1.0, 1 / std::max(local, 1e-300));
-  }
-  return out;
+  return local_misfit(plant, rest, bins, around).cwiseMax(1e-300).cwiseInverse().cwiseMin(1.0);
 }
 
 /// Returns the likeliest motion, docs/equations.md (34), for which the gradient is exact.
@@ -271,6 +263,17 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   out.operation = Operations(mass, stiffness, damping, std::move(additions), segment.w);
   follow_unread(plant, out.forces, out.operation, out.calibrated);
   weigh(plant, model, segment, std::move(weights), out);
+  return out;
+}
+
+VectorXd local_misfit(const Plant& plant, const VectorXd& rest, Index bins, Index around) {
+  const Index n = plant.equations();
+  VectorXd level(bins), out(bins);
+  for (Index b = 0; b < bins; ++b) level[b] = rest.segment(2 * n * b, 2 * n).squaredNorm();
+  for (Index b = 0; b < bins; ++b) {
+    const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
+    out[b] = level.segment(from, to - from).mean() / static_cast<double>(plant.read_equations());
+  }
   return out;
 }
 

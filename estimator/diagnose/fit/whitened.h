@@ -90,6 +90,11 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
 Whitened with_own_weights(const Plant& plant, const Model& model, const RecordSegment& segment,
                           Whitened system);
 
+/// Returns the misfit near every bin over its expectation: the mean of the bin and of `around` on
+/// each side. rest: whitened residual.
+Eigen::VectorXd local_misfit(const Plant& plant, const Eigen::VectorXd& rest, Eigen::Index bins,
+                             Eigen::Index around);
+
 /// Sets the likeliest motion if only `rest` of the residual is noise: an arbitrary force explains
 /// the other part.
 void set_motion(const Plant& plant, const Model& model, const RecordSegment& segment,

@@ -276,7 +276,7 @@ Localisation localise(const Fitter& fitter, const Model& start,
     update_directions(plant, model, current);
     // The signals are not noise: with them in the motion, the columns of a large building's many
     // elements would be biased.
-    for (std::size_t r = 0; r < systems.size() && plant.is_large(); ++r)
+    for (std::size_t r = 0; plant.is_large() && r < systems.size(); ++r)
       set_motion(plant, model, fitter.segments()[r], rest_without(systems[r], current), systems[r]);
     const Linearised at = fitter.linearise(model, std::move(systems));
     const std::vector<Index> kept = moving(at, true);
