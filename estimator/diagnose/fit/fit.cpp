@@ -64,7 +64,7 @@ Fitter::Fitter(const Plant& plant, const std::vector<RecordSegment>& segments,
       tolerances_(tolerances),
       settings_(settings),
       within_(std::move(within)) {
-  for (const RecordSegment& s : segments) ratio_.push_back(steps_per_sample(plant, s.rate_hz));
+  for (const RecordSegment& s : segments) ratio_.push_back(steps_per_sample(plant, s));
 }
 
 double Fitter::expected(std::size_t record, const Model& model) const {

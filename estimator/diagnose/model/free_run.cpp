@@ -95,6 +95,7 @@ std::optional<InitialMotion> initial_motion(const Plant& plant, const Model& mod
 }
 
 constexpr double kStepsPerPeriod = 30;
+constexpr double kNotResolved = 1e-4;  ///< share of the power of the floors' displacements
 constexpr int kFewestSteps = 2, kMaxSteps = 12;  ///< per sample
 constexpr int kContactSteps =
     4;  ///< for each step without contacts: contacts open and close within a step
@@ -137,6 +138,26 @@ double root_near(const Miss& miss, double start, double& slope) {
     value = found;
   }
   return f;
+}
+
+/// Returns the frequency up to which the measured floors are displaced against the ground.
+double highest_of_motion_hz(const Plant& plant, const RecordSegment& segment) {
+  const Index bins = segment.bins(), axes = plant.axis_count();
+  const LeastSquares coordinates(plant.constraint);
+  MatrixXd relative = plant.motion.leftCols(axes);
+  for (Index a = 0; a < axes; ++a)
+    relative.col(a) -= coordinates.solve(VectorXd(plant.ground.col(a)));
+  const VectorXd power = (relative.cast<Complex>() * segment.spectrum)
+                             .colwise()
+                             .squaredNorm()
+                             .transpose()
+                             .cwiseQuotient(segment.w.array().pow(4).matrix());
+  double above = 0;
+  for (Index k = bins - 1; k >= 0; --k) {
+    above += power[k];
+    if (above > kNotResolved * power.sum()) return segment.w[k] / (2 * M_PI);
+  }
+  return plant.highest_hz;
 }
 
 std::vector<Index> driving_axes(const Plant& plant) {
@@ -262,9 +283,10 @@ class RunForces {
 
 }  // namespace
 
-int steps_per_sample(const Plant& plant, double rate_hz) {
+int steps_per_sample(const Plant& plant, const RecordSegment& segment) {
   if (plant.prescribed) return kPrescribedSteps;
-  return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * plant.highest_hz / rate_hz)),
+  const double highest_hz = std::min(plant.highest_hz, highest_of_motion_hz(plant, segment));
+  return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * highest_hz / segment.rate_hz)),
                     kFewestSteps, kMaxSteps);
 }
 

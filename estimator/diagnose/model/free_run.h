@@ -38,8 +38,9 @@ FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& se
                  std::size_t record, int ratio, RunCache* cache = nullptr,
                  const std::vector<SmallSpring>& springs = {});
 
-/// Returns the steps per sample that resolve the model's highest mode.
-int steps_per_sample(const Plant& plant, double rate_hz);
+/// Returns the steps per sample that resolve the floors' measured displacement, but no frequency
+/// above the highest mode of the design.
+int steps_per_sample(const Plant& plant, const RecordSegment& segment);
 /// Returns the steps per sample of a model: more than `ratio` if it has contacts.
 int steps_of(const Model& model, int ratio);
 

@@ -61,7 +61,7 @@ struct Plant {
   Eigen::Index read_equations() const { return equations() - unread.cols(); }
   /// Returns true if fits must use less work: docs/diagnosis.md, "Large buildings".
   bool is_large() const {
-    constexpr Eigen::Index kLarge = 40;  // equations
+    constexpr Eigen::Index kLarge = 36;  // equations
     return equations() > kLarge;
   }
   bool is_force(Eigen::Index axis) const { return !push.col(axis).isZero(0); }

@@ -54,7 +54,7 @@ void set_broadband(Effect& out, const Plant& plant, const std::vector<RecordSegm
   });
   const RecordSegment& s = segments.front();
   const Whitened system =
-      whiten(plant, rest, s, 0, forcing_of(rest), {}, steps_per_sample(plant, s.rate_hz));
+      whiten(plant, rest, s, 0, forcing_of(rest), {}, steps_per_sample(plant, s));
   if (!system.good) return;
   const Eigen::Index n = plant.equations();
   const Eigen::VectorXcd direction =

@@ -42,14 +42,29 @@ bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& o
          hysteretic(fitted) && hysteretic(other);
 }
 
-/// Returns laws that may be causes, best first, one of every name and place.
+/// Returns the trials in another order: the best of every name, then the others. Far from the noise
+/// the misfit does not rank names: the weights count frequencies in which no name explains anything.
+std::vector<const Trial*> best_of_names_first(const std::vector<Trial>& tried) {
+  std::vector<const Trial*> out, others;
+  for (const Trial& t : tried) {
+    const bool again =
+        std::any_of(out.begin(), out.end(), [&](const Trial* o) { return o->kind == t.kind; });
+    const bool first = !again && !t.second && t.outcome == TrialOutcome::fitted;
+    (first ? out : others).push_back(&t);
+  }
+  out.insert(out.end(), others.begin(), others.end());
+  return out;
+}
+
+/// Returns laws that may be causes, one of every name and place.
 std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
   const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
   const SearchSettings& settings = c.settings();
   const std::size_t most =
       std::max(settings.finalists, std::min(kMaxWork / equations, settings.causes));
   std::vector<const Trial*> out;
-  for (const Trial& t : tried) {
+  for (const Trial* one : best_of_names_first(tried)) {
+    const Trial& t = *one;
     const bool otherwise = std::any_of(out.begin(), out.end(),
                                        [&](const Trial* o) { return yields_otherwise(c, *o, t); });
     if (t.second || (t.outcome != TrialOutcome::fitted && !otherwise)) continue;
@@ -222,19 +237,29 @@ class Selection {
     return out;
   }
 
+  /// Returns the start of an extension with the smallest gap.
+  Model best_start(const Extension& e) const {
+    Model out;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Start start : {Start::changed, Start::trial, Start::little}) {
+      Model model = extended(context_, e.from->model, *tried_[e.cause], start);
+      const double gap = rms_gap(train_, model);
+      if (out.theta.size() > 0 && gap >= least) continue;
+      out = std::move(model);
+      least = gap;
+    }
+    return out;
+  }
+
   /// Returns sets with one more cause than the given ones, best first. Fits all of them a step, the
-  /// better half a few more, then the best to convergence.
+  /// better half a few more, then the one that may lead to convergence.
   std::vector<CauseSet> larger(const std::vector<CauseSet>& sets) {
     const std::vector<Extension> all = extensions(sets);
     std::vector<CauseSet> out(all.size());
     run_all(context_.parallel, static_cast<int>(all.size()), [&](int i) {
       const Extension& e = all[static_cast<std::size_t>(i)];
-      const Trial& t = *tried_[e.cause];
-      std::vector<Model> starts;
-      for (const Start start : {Start::changed, Start::trial, Start::little})
-        starts.push_back(extended(context_, e.from->model, t, start));
       out[static_cast<std::size_t>(i)] =
-          judged(e.members, free_run_fit(train_, starts, 1, false).model);
+          judged(e.members, free_run_fit(train_, {best_start(e)}, 1, false).model);
     });
     const auto best_first = [&] {
       std::stable_sort(out.begin(), out.end(),
@@ -254,10 +279,10 @@ class Selection {
     };
     sort();
     if (out.size() > settings_.laws) out.resize(settings_.laws);
-    run_all(context_.parallel, static_cast<int>(out.size()), [&](int i) {
-      CauseSet& s = out[static_cast<std::size_t>(i)];
-      s = finished(s);
-    });
+    const auto leads =
+        std::find_if(out.begin(), out.end(), [&](const CauseSet& s) { return may_lead(s); });
+    if (CauseSet* one = leads != out.end() ? &*leads : out.empty() ? nullptr : &out.front())
+      *one = finished(*one);
     sort();
     all_.insert(all_.end(), out.begin(), out.end());
     return out;

@@ -316,7 +316,8 @@ bool EffectSearch::one_round(FitResult& now, std::size_t round) {
   if (place.ratio - 1 > fitter_.settings().clearer * (to_beat_ - 1)) return false;
   alone_ = place.ratio;
   const double expected_now = fitter_.expected(now.model);
-  const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;
+  // No law of one place explains more than an arbitrary force at the best one.
+  const double excess = now.total_misfit() - std::max(place.ratio, 0.5) * expected_now;
   if (out_.where.empty()) {
     out_.where = where_of(fitter_, located.places);
     out_.map = map_of(located);

@@ -74,7 +74,7 @@ struct Run {
 std::optional<Run> run_of(const Plant& plant, Model model, const RecordSegment& segment,
                           std::size_t record, const EffectPlace& place, const LawPort& port) {
   model.effects.push_back(probe(place));
-  const int ratio = steps_of(model, steps_per_sample(plant, segment.rate_hz));
+  const int ratio = steps_of(model, steps_per_sample(plant, segment));
   const FreeRun run = free_run(plant, model, segment, record, ratio);
   if (!run.good) return std::nullopt;
   const std::vector<ActiveLaw> laws = active_laws(plant, model);
@@ -130,7 +130,7 @@ std::optional<Measured> measure(const Plant& plant, const Model& model,
   if (port.sense.tail(hidden).norm() > kNothing * port.sense.norm() ||
       inertia.tail(hidden).norm() > kNothing * inertia.norm())
     return std::nullopt;
-  const int ratio = steps_of(model, steps_per_sample(plant, segment.rate_hz));
+  const int ratio = steps_of(model, steps_per_sample(plant, segment));
   const Whitened system = whiten(plant, model, segment, record, Forcing::measured, {}, ratio);
   if (!system.good) return std::nullopt;
 

@@ -58,7 +58,7 @@ TEST_P(FitColumns, AreTheDerivativesOfTheResidual) {
   const Small small;
   const Plant plant = small.plant();
   const RecordSegment segment = small.segments({small.record({}, 1)}).front();
-  const int ratio = steps_per_sample(plant, segment.rate_hz);
+  const int ratio = steps_per_sample(plant, segment);
   const ModelEffect effect = one_of_every_form()[GetParam()];
   Model model = test::with_effects(test::true_model(small, plant), {effect});
   // A point where nothing is zero.
@@ -183,7 +183,7 @@ TEST(RunColumns, AreTheDerivativesOfTheRun) {
   const Case c;
   const RecordSegment segment =
       c.small.segments({test::exact_record(c.small, {c.twins.simulated}, 1)}).front();
-  const int ratio = steps_per_sample(c.plant, segment.rate_hz);
+  const int ratio = steps_per_sample(c.plant, segment);
   Whitened at = whiten(c.plant, c.model, segment, 0, Forcing::simulated, {}, ratio);
   ASSERT_TRUE(at.good);
   at.motion = at.calibrated;

@@ -55,17 +55,44 @@ TEST(Upsampled, KeepsSamplesAndConstants) {
   EXPECT_EQ(upsampled(VectorXd(), 3).size(), 0);
 }
 
-TEST(StepsPerSample, ResolveTheHighestMode) {
-  struct Case {
-    double highest_hz, rate_hz;
-    int steps;
-  };
+struct Shaking {
+  double highest_hz;        ///< of the design
+  double slow_hz, fast_hz;  ///< of the top's acceleration, of equal size; 0: at rest
+  int steps;
+};
+
+TEST(StepsPerSample, ResolveTheDisplacementOfTheFloors) {
+  constexpr double kRate = 100;
+  constexpr Index kSamples = 2001;
   Plant plant = test::SingleMass().plant();
-  for (const Case& c : {Case{0.1, 100, 2}, Case{10, 100, 3}, Case{10, 50, 6}, Case{20.1, 100, 7},
-                        Case{500, 100, 12}}) {
+  for (const Shaking& c :
+       {Shaking{500, 10, 10, 3}, Shaking{500, 20.1, 20.1, 7}, Shaking{500, 3, 3, 2},
+        Shaking{500, 10, 20, 6}, Shaking{500, 3, 44, 2},  // 44 Hz displaces by 0.5 % of 3 Hz
+        Shaking{10, 20, 20, 3}, Shaking{0.1, 20, 20, 2}, Shaking{500, 0, 0, 12}}) {
     plant.highest_hz = c.highest_hz;
-    EXPECT_EQ(steps_per_sample(plant, c.rate_hz), c.steps) << c.highest_hz << " " << c.rate_hz;
+    Eigen::MatrixXd accel = Eigen::MatrixXd::Zero(kSamples, 2);
+    for (Index i = 0; i < kSamples; ++i)
+      for (const double hz : {c.slow_hz, c.fast_hz})
+        accel(i, 0) += std::sin(2 * M_PI * hz * static_cast<double>(i) / kRate);
+    const RecordSegment segment =
+        make_segment(accel, kRate, Eigen::Vector2d::Constant(1e-3), {0.5, 46});
+    EXPECT_EQ(steps_per_sample(plant, segment), c.steps)
+        << c.highest_hz << " " << c.slow_hz << " " << c.fast_hz;
   }
+}
+
+/// A floor that moves with its ground is not displaced.
+TEST(StepsPerSample, DoNotResolveTheMotionOfTheGround) {
+  Eigen::MatrixXd accel(2001, 2);
+  for (Index i = 0; i < accel.rows(); ++i) {
+    const double ground = std::sin(2 * M_PI * 20 * static_cast<double>(i) / 100);
+    accel.row(i) << ground + std::sin(2 * M_PI * 3 * static_cast<double>(i) / 100), ground;
+  }
+  Plant plant = test::SingleMass().plant();
+  plant.highest_hz = 500;
+  EXPECT_EQ(
+      steps_per_sample(plant, make_segment(accel, 100, Eigen::Vector2d::Constant(1e-3), {0.5, 46})),
+      2);
 }
 
 }  // namespace upsampled_test

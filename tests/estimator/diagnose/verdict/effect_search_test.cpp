@@ -80,6 +80,23 @@ bool names(const Diagnosis& d, const Effect& effect) {
   });
 }
 
+/// Noise that is stated too small is a misfit that no place explains.
+TEST(EffectSearch, TriesNoLawIfNoPlaceExplainsEnough) {
+  constexpr double kStated = 0.8;  // of the variance
+  test::Recorded r(test::records_with({}, {1, 2}));
+  for (RecordSegment& segment : r.segments) segment.variance *= kStated;
+  DiagnosisOptions options = test::held_out_from(1);
+  Told told;
+  options.progress = told.listener();
+  const Diagnosis d = diagnose(r.plant, r.segments, options);
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_TRUE(d.rejected.empty());
+  EXPECT_FALSE(d.where.empty());
+  EXPECT_TRUE(std::none_of(told.what.begin(), told.what.end(), [](const std::string& what) {
+    return what.find("laws") != std::string::npos;
+  }));
+}
+
 TEST(TwoEffects, MayShareAPlaceIfOneChangesWithTime) {
   const Effect friction =
       test::effect_of(EffectKind::coulomb_friction, test::in_frame(1), {9e3, 0.004});
