@@ -43,7 +43,7 @@ bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& o
 }
 
 /// Returns the trials in another order: the best of every name, then the others. Far from the noise
-/// the misfit does not rank names: the weights count frequencies in which no name explains anything.
+/// the misfit does not rank names: it counts frequencies in which no name explains anything.
 std::vector<const Trial*> best_of_names_first(const std::vector<Trial>& tried) {
   std::vector<const Trial*> out, others;
   for (const Trial& t : tried) {
@@ -137,7 +137,6 @@ class Selection {
       const auto leads =
           std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });
       if (leads != kept.end() && is_worth(*leads, best)) best = *leads;
-      if (kept.size() > settings_.finalists) kept.resize(settings_.finalists);
     }
     return result(without_redundant(std::move(best)));
   }
@@ -252,7 +251,7 @@ class Selection {
   }
 
   /// Returns sets with one more cause than the given ones, best first. Fits all of them a step, the
-  /// better half a few more, then the one that may lead to convergence.
+  /// better half a few more, then the best to convergence.
   std::vector<CauseSet> larger(const std::vector<CauseSet>& sets) {
     const std::vector<Extension> all = extensions(sets);
     std::vector<CauseSet> out(all.size());
@@ -278,11 +277,11 @@ class Selection {
       best_first();
     };
     sort();
-    if (out.size() > settings_.laws) out.resize(settings_.laws);
-    const auto leads =
-        std::find_if(out.begin(), out.end(), [&](const CauseSet& s) { return may_lead(s); });
-    if (CauseSet* one = leads != out.end() ? &*leads : out.empty() ? nullptr : &out.front())
-      *one = finished(*one);
+    if (out.size() > settings_.finalists) out.resize(settings_.finalists);
+    run_all(context_.parallel, static_cast<int>(out.size()), [&](int i) {
+      CauseSet& s = out[static_cast<std::size_t>(i)];
+      s = finished(s);
+    });
     sort();
     all_.insert(all_.end(), out.begin(), out.end());
     return out;
