@@ -147,15 +147,16 @@ double highest_of_motion_hz(const Plant& plant, const RecordSegment& segment) {
   MatrixXd relative = plant.motion.leftCols(axes);
   for (Index a = 0; a < axes; ++a)
     relative.col(a) -= coordinates.solve(VectorXd(plant.ground.col(a)));
-  const VectorXd power = (relative.cast<Complex>() * segment.spectrum)
-                             .colwise()
-                             .squaredNorm()
-                             .transpose()
-                             .cwiseQuotient(segment.w.array().pow(4).matrix());
+  const MatrixXd real = relative * segment.spectrum.real();
+  const MatrixXd imaginary = relative * segment.spectrum.imag();
+  const VectorXd power =
+      (real.colwise().squaredNorm() + imaginary.colwise().squaredNorm()).transpose().array() /
+      segment.w.array().pow(4);
+  const double unresolved = kNotResolved * power.sum();
   double above = 0;
   for (Index k = bins - 1; k >= 0; --k) {
     above += power[k];
-    if (above > kNotResolved * power.sum()) return segment.w[k] / (2 * M_PI);
+    if (above > unresolved) return segment.w[k] / (2 * M_PI);
   }
   return plant.highest_hz;
 }

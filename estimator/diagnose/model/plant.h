@@ -59,9 +59,9 @@ struct Plant {
   Eigen::Index axis_count() const { return building.axes() - unread.cols(); }
   /// Returns the equations left after eliminating the motions that no axis reads.
   Eigen::Index read_equations() const { return equations() - unread.cols(); }
-  /// Returns true if fits must use less work: docs/diagnosis.md, "Large buildings".
+  /// Returns true if fits must use less work: docs/lab/method.md, "Diagnosis of large buildings".
   bool is_large() const {
-    constexpr Eigen::Index kLarge = 36;  // equations
+    constexpr Eigen::Index kLarge = 36;  // equations: with 40, whole fits took 20 minutes
     return equations() > kLarge;
   }
   bool is_force(Eigen::Index axis) const { return !push.col(axis).isZero(0); }
