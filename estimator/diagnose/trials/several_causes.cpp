@@ -42,29 +42,14 @@ bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& o
          hysteretic(fitted) && hysteretic(other);
 }
 
-/// Returns the trials in another order: the best of every name, then the others. Far from the noise
-/// the misfit does not rank names: it counts frequencies in which no name explains anything.
-std::vector<const Trial*> best_of_names_first(const std::vector<Trial>& tried) {
-  std::vector<const Trial*> out, others;
-  for (const Trial& t : tried) {
-    const bool again =
-        std::any_of(out.begin(), out.end(), [&](const Trial* o) { return o->kind == t.kind; });
-    const bool first = !again && !t.second && t.outcome == TrialOutcome::fitted;
-    (first ? out : others).push_back(&t);
-  }
-  out.insert(out.end(), others.begin(), others.end());
-  return out;
-}
-
-/// Returns laws that may be causes, one of every name and place.
+/// Returns laws that may be causes, best first, one of every name and place.
 std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
   const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
   const SearchSettings& settings = c.settings();
   const std::size_t most =
       std::max(settings.finalists, std::min(kMaxWork / equations, settings.causes));
   std::vector<const Trial*> out;
-  for (const Trial* one : best_of_names_first(tried)) {
-    const Trial& t = *one;
+  for (const Trial& t : tried) {
     const bool otherwise = std::any_of(out.begin(), out.end(),
                                        [&](const Trial* o) { return yields_otherwise(c, *o, t); });
     if (t.second || (t.outcome != TrialOutcome::fitted && !otherwise)) continue;

@@ -57,19 +57,6 @@ TEST(SeveralCauses, TwoSimultaneousOnesAreFoundTogether) {
   ASSERT_EQ(several.model.effects.size(), 1U);
 }
 
-/// Far from the noise, many errors of channels may fit better than the law that acts.
-TEST(SeveralCauses, TheBestOfEveryNameIsComparedFirst) {
-  const HandMade made(records_of_two_causes());
-  std::vector<Trial> tried, laws = tried_at(made, {test::in_frame(2)});
-  for (int axis = 0; axis < 6; ++axis)
-    for (Trial& t : tried_at(made, {test::at_channel(axis)}))
-      if (t.outcome == TrialOutcome::fitted && is_axis_error(t.kind)) tried.push_back(std::move(t));
-  ASSERT_GE(tried.size(), made.recorded.fitter.settings().causes);
-  tried.insert(tried.end(), laws.begin(), laws.end());
-  EXPECT_TRUE(names(several_causes(made.context(), tried, 1), EffectKind::cubic_stiffness,
-                    test::in_frame(2)));
-}
-
 TEST(SeveralCauses, NoneIsChosenWithoutHeldOutRecords) {
   const HandMade made(records_of_one_cause());
   const std::vector<Trial> tried = tried_at(made, {test::at_channel(0)});
