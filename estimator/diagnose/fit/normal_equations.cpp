@@ -2,6 +2,7 @@
 #include "estimator/diagnose/fit/normal_equations.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "estimator/diagnose/fit/bin_products.h"
@@ -157,8 +158,9 @@ VectorXd bounded_step(const MatrixXd& normal, const VectorXd& right, const Model
       const Unknown& u = unknowns[i];
       const auto at = static_cast<Index>(i);
       const double from = value_of(model, u), to = from + step[at];
-      const double low = u.stops_alone ? std::max(u.low, from - u.longest_step) : u.low;
-      const double high = u.stops_alone ? std::min(u.high, from + u.longest_step) : u.high;
+      const double longest =
+          u.stops_alone ? u.longest_step : std::numeric_limits<double>::infinity();
+      const double low = std::max(u.low, from - longest), high = std::min(u.high, from + longest);
       if (held[i] || (to >= low && to <= high)) continue;
       held[i] = true;
       to_bound[at] = std::clamp(to, low, high) - from;

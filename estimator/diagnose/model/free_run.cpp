@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/model/law_port.h"
+#include "estimator/diagnose/model/modal_damping.h"
 #include "estimator/diagnose/model/modal_system.h"
 #include "estimator/diagnose/model/model.h"
 #include "estimator/diagnose/model/run_system.h"
@@ -142,11 +143,7 @@ double root_near(const Miss& miss, double start, double& slope) {
 
 /// Returns the frequency up to which the measured floors are displaced against the ground.
 double highest_of_motion_hz(const Plant& plant, const RecordSegment& segment) {
-  const Index bins = segment.bins(), axes = plant.axis_count();
-  const LeastSquares coordinates(plant.constraint);
-  MatrixXd relative = plant.motion.leftCols(axes);
-  for (Index a = 0; a < axes; ++a)
-    relative.col(a) -= coordinates.solve(VectorXd(plant.ground.col(a)));
+  const MatrixXd relative = relative_motion(plant).leftCols(plant.axis_count());
   const MatrixXd real = relative * segment.spectrum.real();
   const MatrixXd imaginary = relative * segment.spectrum.imag();
   const VectorXd power =
@@ -154,7 +151,7 @@ double highest_of_motion_hz(const Plant& plant, const RecordSegment& segment) {
       segment.w.array().pow(4);
   const double unresolved = kNotResolved * power.sum();
   double above = 0;
-  for (Index k = bins - 1; k >= 0; --k) {
+  for (Index k = segment.bins() - 1; k >= 0; --k) {
     above += power[k];
     if (above > unresolved) return segment.w[k] / (2 * M_PI);
   }
